@@ -1,0 +1,198 @@
+//! Pixel and depth formats, depth functions, topologies: every enumeration a register or packet holds.
+
+macro_rules! enumeration {
+    ($(#[doc = $doc:literal])+ $type:ident { $( $(#[doc = $vdoc:literal])+ $variant:ident = $value:literal $name:literal, )+ }) => {
+        $(#[doc = $doc])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u32)]
+        pub enum $type { $( $(#[doc = $vdoc])+ $variant = $value, )+ }
+
+        impl $type {
+            /// Every value, in rising order of its code.
+            pub const ALL: &'static [$type] = &[ $( $type::$variant, )+ ];
+
+            /// The value with this code, if there is one.
+            #[must_use]
+            pub const fn from_code(code: u32) -> Option<$type> {
+                match code { $( $value => Some($type::$variant), )+ _ => None }
+            }
+
+            /// The code as it stands in registers and packets.
+            #[must_use]
+            pub const fn code(self) -> u32 {
+                self as u32
+            }
+
+            /// The name as it stands in scene files and reports.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $( $type::$variant => $name, )+ }
+            }
+        }
+    };
+}
+
+enumeration! {
+    /// Format of a pixel in a frame buffer.
+    PixelFormat {
+        /// 32 bits: 31:24 written as 255, 23:16 red, 15:8 green, 7:0 blue.
+        Xrgb8888 = 0 "xrgb8888",
+        /// 32 bits: 31:24 alpha, 23:16 red, 15:8 green, 7:0 blue.
+        Argb8888 = 1 "argb8888",
+        /// 16 bits: 15:11 red, 10:5 green, 4:0 blue; the top bits of each 8-bit channel.
+        Rgb565 = 2 "rgb565",
+    }
+}
+
+impl PixelFormat {
+    /// Bytes of a pixel.
+    #[must_use]
+    pub const fn bytes(self) -> u32 {
+        match self {
+            PixelFormat::Xrgb8888 | PixelFormat::Argb8888 => 4,
+            PixelFormat::Rgb565 => 2,
+        }
+    }
+
+    /// The stored pixel of an RGBA colour.
+    #[must_use]
+    pub const fn encode(self, [r, g, b, a]: [u8; 4]) -> u32 {
+        match self {
+            PixelFormat::Xrgb8888 => u32::from_be_bytes([255, r, g, b]),
+            PixelFormat::Argb8888 => u32::from_be_bytes([a, r, g, b]),
+            PixelFormat::Rgb565 => ((r as u32 >> 3) << 11) | ((g as u32 >> 2) << 5) | (b as u32 >> 3),
+        }
+    }
+
+    /// The RGBA colour of a stored pixel; 5 and 6 bits are widened by repeating their top bits.
+    #[must_use]
+    pub const fn decode(self, pixel: u32) -> [u8; 4] {
+        let [top, r, g, b] = pixel.to_be_bytes();
+        match self {
+            PixelFormat::Xrgb8888 => [r, g, b, 255],
+            PixelFormat::Argb8888 => [r, g, b, top],
+            PixelFormat::Rgb565 => {
+                let (r, g, b) = ((pixel >> 11) & 31, (pixel >> 5) & 63, pixel & 31);
+                [((r << 3) | (r >> 2)) as u8, ((g << 2) | (g >> 4)) as u8, ((b << 3) | (b >> 2)) as u8, 255]
+            }
+        }
+    }
+}
+
+enumeration! {
+    /// Comparison of a fragment's depth (left) with the stored depth (right).
+    DepthFunction {
+        /// Nothing passes.
+        Never = 0 "never",
+        /// Strictly nearer passes: at equal depth the earlier command stays.
+        Less = 1 "less",
+        /// Equal passes.
+        Equal = 2 "equal",
+        /// Nearer or equal passes.
+        LessEqual = 3 "less-equal",
+        /// Farther passes.
+        Greater = 4 "greater",
+        /// Different passes.
+        NotEqual = 5 "not-equal",
+        /// Farther or equal passes.
+        GreaterEqual = 6 "greater-equal",
+        /// Everything passes.
+        Always = 7 "always",
+    }
+}
+
+enumeration! {
+    /// How the vertices of a draw make primitives.
+    Topology {
+        /// Three vertices each.
+        Triangles = 0 "triangles",
+        /// Two vertices each.
+        Lines = 1 "lines",
+        /// One vertex each.
+        Points = 2 "points",
+        /// Each vertex after the first ends a line that starts at the one before.
+        LineStrip = 3 "line-strip",
+    }
+}
+
+impl Topology {
+    /// Primitives that `vertices` vertices (or indices) make; those left over make none.
+    #[must_use]
+    pub const fn primitives(self, vertices: u32) -> u32 {
+        match self {
+            Topology::Triangles => vertices / 3,
+            Topology::Lines => vertices / 2,
+            Topology::Points => vertices,
+            Topology::LineStrip => vertices.saturating_sub(1),
+        }
+    }
+}
+
+enumeration! {
+    /// How visibility is decided.
+    HiddenSurface {
+        /// Plain Z buffer.
+        ZBuffer = 0 "zbuffer",
+        /// Z buffer with a status word for each block of pixels.
+        Za = 1 "za",
+        /// Systolic scan-line array.
+        Systolic = 2 "systolic",
+        /// Tiles found by a Y then X sort.
+        Tile = 3 "tile",
+    }
+}
+
+/// Number format of depth: unsigned integers 0 (near) ..= 2^bits - 1 (far).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct DepthFormat {
+    bits: u32,
+    fraction: u32,
+}
+
+impl Default for DepthFormat {
+    /// 24 bits with 24 fraction bits.
+    fn default() -> Self {
+        DepthFormat { bits: 24, fraction: 24 }
+    }
+}
+
+impl DepthFormat {
+    /// A format of `bits` (16, 24 or 31) with gradients of `fraction` bits (0, 8, 16 or 24); else `None`.
+    #[must_use]
+    pub const fn new(bits: u32, fraction: u32) -> Option<DepthFormat> {
+        match (bits, fraction) {
+            (16 | 24 | 31, 0 | 8 | 16 | 24) => Some(DepthFormat { bits, fraction }),
+            _ => None,
+        }
+    }
+
+    /// The format in a DEPTH_FORMAT register.
+    #[must_use]
+    pub const fn from_code(code: u32) -> Option<DepthFormat> {
+        DepthFormat::new(code & 0x1F, (code >> 8) & 0x1F)
+    }
+
+    /// The value for a DEPTH_FORMAT register.
+    #[must_use]
+    pub const fn code(self) -> u32 {
+        self.bits | (self.fraction << 8)
+    }
+
+    /// Bits of a depth.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        self.bits
+    }
+
+    /// Fraction bits of the gradients.
+    #[must_use]
+    pub const fn fraction(self) -> u32 {
+        self.fraction
+    }
+
+    /// The farthest depth, 2^bits - 1; also the clear value.
+    #[must_use]
+    pub const fn maximum(self) -> u32 {
+        (1 << self.bits) - 1
+    }
+}

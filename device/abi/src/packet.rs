@@ -1,0 +1,159 @@
+//! Command packets: a header word, then payload words. Every opcode and payload stands here once.
+//!
+//! Header: 31:24 opcode, 23:20 zero, 19:0 number of payload words.
+
+macro_rules! opcodes {
+    ($( $(#[doc = $doc:literal])+ $id:ident = $code:literal $name:literal $payload:literal, )+) => {
+        /// Opcodes.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u32)]
+        pub enum Opcode { $( $(#[doc = $doc])+ $id = $code, )+ }
+
+        impl Opcode {
+            /// Every opcode, rising.
+            pub const ALL: &'static [Opcode] = &[ $( Opcode::$id, )+ ];
+
+            /// The opcode with this code, if there is one.
+            #[must_use]
+            pub const fn from_code(code: u32) -> Option<Opcode> {
+                match code { $( $code => Some(Opcode::$id), )+ _ => None }
+            }
+
+            /// The name in manual and messages.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $( Opcode::$id => $name, )+ }
+            }
+
+            /// What the packet does.
+            #[must_use]
+            pub const fn doc(self) -> &'static str {
+                match self { $( Opcode::$id => concat!($($doc),+), )+ }
+            }
+
+            /// The payload words, for the manual.
+            #[must_use]
+            pub const fn payload(self) -> &'static str {
+                match self { $( Opcode::$id => $payload, )+ }
+            }
+        }
+    };
+}
+
+/// Most payload words of one packet.
+pub const MAX_PAYLOAD: u32 = (1 << 20) - 1;
+
+opcodes! {
+    /// Does nothing; the payload is skipped.
+    NoOperation = 0x00 "NO_OPERATION" "any",
+    /// Writes registers of the ranges 0x0048..0x0050 and 0x0200..0x0700 from a byte offset upward, in stream order.
+    RegisterWrite = 0x01 "REGISTER_WRITE" "offset, value, ...",
+    /// Samples target, path and accuracy registers, and begins a scene.
+    BeginScene = 0x02 "BEGIN_SCENE" "",
+    /// Ends the scene: everything drawn is in memory.
+    EndScene = 0x03 "END_SCENE" "",
+    /// Clears frame buffer (bit 0 of planes) and Z buffer (bit 1) inside the scissor. Colour as in MATERIAL_COLOUR.
+    Clear = 0x04 "CLEAR" "planes, colour, depth",
+    /// Draws from vertices (and indices) in the packet. Flags as in [`DrawFlags`].
+    DrawInline = 0x10 "DRAW_INLINE" "flags, vertices, indices, vertex words ..., index words ...",
+    /// Draws from vertices (and indices) in video memory: byte addresses, multiples of 4. Without indices, the last two words are 0.
+    DrawBuffer = 0x11 "DRAW_BUFFER" "flags, vertex address, vertices, index address, indices",
+    /// Fills a rectangle of a surface with a stored pixel value.
+    Fill = 0x20 "FILL" "base, pitch, format, x, y, width, height, value",
+    /// Copies a rectangle between surfaces of the same format; overlap is right.
+    Copy = 0x21 "COPY" "format, source base, source pitch, x, y, destination base, destination pitch, x, y, width, height",
+    /// Writes words from the packet to rows in video memory.
+    Upload = 0x22 "UPLOAD" "address, pitch, words a row, rows, words ...",
+    /// Gathers rows of words in video memory into one dense run there.
+    Download = 0x23 "DOWNLOAD" "address, pitch, words a row, rows, destination",
+    /// Stores the sequence number in FENCE_SEQUENCE and raises the fence interrupt when all before it is done.
+    Fence = 0x30 "FENCE" "sequence",
+    /// Shows the frame buffer at this byte address from the next vertical blank on; waits for it.
+    Present = 0x31 "PRESENT" "base",
+    /// Composes the frame as scan-out would show it into video memory: XRGB8888, dense rows.
+    WriteBack = 0x32 "WRITE_BACK" "destination",
+}
+
+/// The header of a packet with `payload` words behind it.
+///
+/// Only the low 20 bits of `payload` fit; [`MAX_PAYLOAD`] is the most.
+#[must_use]
+pub const fn header(opcode: Opcode, payload: u32) -> u32 {
+    ((opcode as u32) << 24) | (payload & MAX_PAYLOAD)
+}
+
+/// Number of payload words in a header.
+#[must_use]
+pub const fn payload_words(header: u32) -> u32 {
+    header & MAX_PAYLOAD
+}
+
+/// Clears the frame buffer.
+pub const CLEAR_COLOUR: u32 = 1 << 0;
+/// Clears the Z buffer.
+pub const CLEAR_DEPTH: u32 = 1 << 1;
+
+/// The flags word of a draw packet.
+///
+/// 1:0 topology, 4 indexed, 8 vertices carry a colour; all other bits are zero.
+/// A vertex is x, y, z as f32, then (if bit 8 is set) a colour word: red in 7:0, alpha in 31:24.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawFlags {
+    /// How vertices make primitives.
+    pub topology: crate::format::Topology,
+    /// Vertices are named by 32-bit indices.
+    pub indexed: bool,
+    /// Each vertex has a colour word; else MATERIAL_COLOUR is used.
+    pub coloured: bool,
+}
+
+impl DrawFlags {
+    /// The flags in a word, if it is a valid one.
+    #[must_use]
+    pub const fn from_code(code: u32) -> Option<DrawFlags> {
+        if code & !0x113 != 0 {
+            return None;
+        }
+        match crate::format::Topology::from_code(code & 3) {
+            Some(topology) => Some(DrawFlags { topology, indexed: code & 0x10 != 0, coloured: code & 0x100 != 0 }),
+            None => None,
+        }
+    }
+
+    /// The word.
+    #[must_use]
+    pub const fn code(self) -> u32 {
+        self.topology as u32 | ((self.indexed as u32) << 4) | ((self.coloured as u32) << 8)
+    }
+
+    /// Words of a vertex.
+    #[must_use]
+    pub const fn vertex_words(self) -> u32 {
+        if self.coloured { 4 } else { 3 }
+    }
+}
+
+/// Words of one record that the probe writes: see [`ProbeRecord`].
+pub const PROBE_RECORD_WORDS: u32 = 8;
+
+/// One fragment that came to the probed pixel, as it stands in video memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct ProbeRecord {
+    /// Primitive number in its draw, from 0.
+    pub primitive: u32,
+    /// OBJECT_TAG of the draw.
+    pub tag: u32,
+    /// Kind in 7:0 (0 clear, 1 triangle, 2 line, 3 point), depth function in 15:8, verdict in 16 (1 = passed), depth written in 17.
+    pub verdict: u32,
+    /// Depth of the fragment.
+    pub depth: u32,
+    /// Depth stored before it.
+    pub depth_before: u32,
+    /// Colour of the fragment, as in MATERIAL_COLOUR.
+    pub colour: u32,
+    /// Draw number in its scene, from 0.
+    pub draw: u32,
+    /// 0.
+    pub reserved: u32,
+}

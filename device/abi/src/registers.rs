@@ -1,0 +1,301 @@
+//! The register map. Every register stands here once; [`Reg`] names it, [`Reg::info`] tells all of it.
+
+use crate::register::{Access, Field, Register};
+
+/// Bits of f32 1.0.
+const ONE: u32 = 0x3F80_0000;
+/// A 4x4 identity matrix, row-major, as f32 bits.
+const IDENTITY: &[u32] = &[ONE, 0, 0, 0, 0, ONE, 0, 0, 0, 0, ONE, 0, 0, 0, 0, ONE];
+
+macro_rules! registers {
+    ($(
+        $(#[doc = $doc:literal])+
+        $id:ident $name:literal @ $offset:literal [$count:literal] $access:ident
+        reset $reset:expr, writable $writable:expr, w1c $w1c:expr,
+        { $($hi:literal : $lo:literal $field:literal $fdoc:literal;)* }
+    )+) => {
+        /// Names of all registers; [`Reg::info`] gives the declaration.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[repr(u16)]
+        pub enum Reg { $( $(#[doc = $doc])+ $id, )+ }
+
+        /// Every register, in rising order of offset.
+        pub static REGISTERS: &[Register] = &[ $( Register {
+            name: $name, offset: $offset, count: $count, access: Access::$access,
+            reset: $reset, writable: $writable, write_one_to_clear: $w1c,
+            fields: &[ $( Field { hi: $hi, lo: $lo, name: $field, doc: $fdoc }, )* ],
+            doc: concat!($($doc),+),
+        }, )+ ];
+
+        impl Reg {
+            /// Every name, in rising order of offset.
+            pub const ALL: &'static [Reg] = &[ $( Reg::$id, )+ ];
+
+            /// Byte offset of the register's first word.
+            #[must_use]
+            pub const fn offset(self) -> u32 {
+                match self { $( Reg::$id => $offset, )+ }
+            }
+        }
+    };
+}
+
+impl Reg {
+    /// The declaration of this register.
+    #[must_use]
+    pub fn info(self) -> &'static Register {
+        &REGISTERS[self as usize]
+    }
+
+    /// The register that owns the word at byte `offset` of the aperture, and which of its words it is.
+    #[must_use]
+    pub fn at(offset: u32) -> Option<(Reg, u32)> {
+        let after = REGISTERS.partition_point(|r| r.offset <= offset);
+        let reg = *Reg::ALL.get(after.checked_sub(1)?)?;
+        let word = (offset - reg.offset()) / 4;
+        (word < reg.info().count && offset.is_multiple_of(4)).then_some((reg, word))
+    }
+}
+
+registers! {
+    // Identification -------------------------------------------------------------------------
+    /// Says that a ZGA card answers here: ASCII "ZGA1".
+    Identification "IDENTIFICATION" @ 0x0000 [1] ReadOnly reset &[crate::IDENTIFICATION], writable 0, w1c 0, {}
+    /// Version of registers and packets; a driver refuses a major version it does not know.
+    Revision "REVISION" @ 0x0004 [1] ReadOnly reset &[crate::ABI_VERSION], writable 0, w1c 0, {
+        31:16 "major" "incompatible changes";
+        15:0 "minor" "additions";
+    }
+    /// Effects that this card has a unit for; bits as in EFFECTS.
+    CapabilityEffects "CAPABILITY_EFFECTS" @ 0x0008 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Hidden-surface paths that this card has; bit k stands for value k of HIDDEN_SURFACE.
+    CapabilityPaths "CAPABILITY_PATHS" @ 0x000C [1] ReadOnly reset &[0], writable 0, w1c 0, {
+        3:3 "tile" "8x8 tiles found by a Y then X sort";
+        2:2 "systolic" "systolic scan-line array";
+        1:1 "za" "Z buffer with one status word for each block";
+        0:0 "zbuffer" "plain Z buffer";
+    }
+    /// Video memory behind the window, in bytes; chosen at power-on.
+    VideoMemorySize "VIDEO_MEMORY_SIZE" @ 0x0010 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Za RAM behind the window, in bytes; chosen at power-on.
+    ZaRamSize "ZA_RAM_SIZE" @ 0x0014 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Depth of the PIO FIFO in words.
+    FifoDepth "FIFO_DEPTH" @ 0x0018 [1] ReadOnly reset &[crate::bus::FIFO_WORDS], writable 0, w1c 0, {}
+
+    // Control --------------------------------------------------------------------------------
+    /// Soft reset: stops work, empties FIFO and ring, ends a scene, sets registers to their reset values, keeps both memories. The write returns when it is done.
+    Reset "RESET" @ 0x0040 [1] WriteOnly reset &[0], writable 1, w1c 0, {
+        0:0 "reset" "1 resets";
+    }
+    /// What the card is doing.
+    Status "STATUS" @ 0x0044 [1] ReadOnly reset &[0], writable 0, w1c 0, {
+        3:3 "in_scene" "between begin scene and end scene";
+        2:2 "fifo_halted" "an error stopped the FIFO; a reset starts it again";
+        1:1 "ring_halted" "an error stopped the ring; a reset starts it again";
+        0:0 "busy" "packets are being executed or wait";
+    }
+    /// Longest a packet may take, in units of 2^20 clocks; 0 is no limit. A packet over it ends with the fault WATCHDOG.
+    Watchdog "WATCHDOG" @ 0x0048 [1] ReadWrite reset &[0x0001_0000], writable 0xFFFF_FFFF, w1c 0, {}
+    /// Does nothing; for a driver to see whether writes arrive.
+    Scratch "SCRATCH" @ 0x004C [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {}
+
+    // Interrupts and errors ------------------------------------------------------------------
+    /// Interrupts that have occurred, enabled or not.
+    InterruptStatus "INTERRUPT_STATUS" @ 0x0080 [1] WriteOneToClear reset &[0], writable 0, w1c 0x7, {
+        2:2 "error" "a packet was refused";
+        1:1 "vertical_blank" "a vertical blank began";
+        0:0 "fence" "a fence was executed";
+    }
+    /// Interrupts that reach the host; bits as in INTERRUPT_STATUS.
+    InterruptEnable "INTERRUPT_ENABLE" @ 0x0084 [1] ReadWrite reset &[0], writable 0x7, w1c 0, {}
+    /// Why the packet was refused: a fault code (0 = no error since reset).
+    ErrorCode "ERROR_CODE" @ 0x0088 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Where the refused packet came from.
+    ErrorSource "ERROR_SOURCE" @ 0x008C [1] ReadOnly reset &[0], writable 0, w1c 0, {
+        1:0 "source" "0 none, 1 ring, 2 FIFO";
+    }
+    /// Where the refused packet begins: word offset in the ring, or the number of FIFO words taken before it (modulo 2^32).
+    ErrorOffset "ERROR_OFFSET" @ 0x0090 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Header word of the refused packet.
+    ErrorPacket "ERROR_PACKET" @ 0x0094 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Which word of the packet is at fault; 0 is the header.
+    ErrorWord "ERROR_WORD" @ 0x0098 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// The value found there, or the value derived from it that broke the rule.
+    ErrorValue "ERROR_VALUE" @ 0x009C [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Accesses to addresses where nothing is; saturates.
+    BusUnmapped "BUS_UNMAPPED" @ 0x00A0 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Writes to read-only registers; saturates.
+    BusReadOnly "BUS_READ_ONLY" @ 0x00A4 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Accesses whose address is not a multiple of 4; saturates.
+    BusMisaligned "BUS_MISALIGNED" @ 0x00A8 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Words written to a FIFO that an error has halted; saturates. They are not executed.
+    BusRejected "BUS_REJECTED" @ 0x00AC [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Address of the last access counted in BUS_UNMAPPED, BUS_READ_ONLY or BUS_MISALIGNED.
+    BusFaultAddress "BUS_FAULT_ADDRESS" @ 0x00B0 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+
+    // FIFO, ring, fence ----------------------------------------------------------------------
+    /// Words that can be written to the FIFO now without a stall.
+    FifoFree "FIFO_FREE" @ 0x00C0 [1] ReadOnly reset &[crate::bus::FIFO_WORDS], writable 0, w1c 0, {}
+    /// First byte of the command ring in video memory, a multiple of 4096. Writing it sets RING_GET and RING_PUT to 0.
+    RingBase "RING_BASE" @ 0x0100 [1] ReadWrite reset &[0], writable 0xFFFF_F000, w1c 0, {}
+    /// Size of the ring in words, a power of two from 256 to 2^20; 0 is no ring. Writing it sets RING_GET and RING_PUT to 0.
+    RingSize "RING_SIZE" @ 0x0104 [1] ReadWrite reset &[0], writable 0x001F_FFFF, w1c 0, {}
+    /// Word offset after the last word the driver has written; owned by the driver. Always the end of a packet. The ring is empty when it equals RING_GET and full when one word is left: RING_PUT + 1 = RING_GET (modulo the size).
+    RingPut "RING_PUT" @ 0x0108 [1] ReadWrite reset &[0], writable 0x000F_FFFF, w1c 0, {}
+    /// Word offset of the next packet; owned by the card.
+    RingGet "RING_GET" @ 0x010C [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Any write makes the card look at RING_PUT.
+    Doorbell "DOORBELL" @ 0x0110 [1] WriteOnly reset &[0], writable 0xFFFF_FFFF, w1c 0, {}
+    /// Sequence number of the last fence executed.
+    FenceSequence "FENCE_SEQUENCE" @ 0x0140 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+
+    // Target: sampled by begin scene ---------------------------------------------------------
+    /// Size of the picture drawn to.
+    TargetSize "TARGET_SIZE" @ 0x0200 [1] ReadWrite reset &[0], writable 0x7FFF_7FFF, w1c 0, {
+        30:16 "height" "pixels, 1..=16384";
+        14:0 "width" "pixels, 1..=16384";
+    }
+    /// First byte of the frame buffer in video memory, a multiple of 64.
+    ColourBase "COLOUR_BASE" @ 0x0204 [1] ReadWrite reset &[0], writable 0xFFFF_FFC0, w1c 0, {}
+    /// Bytes from one row of the frame buffer to the next, a multiple of 64.
+    ColourPitch "COLOUR_PITCH" @ 0x0208 [1] ReadWrite reset &[0], writable 0x000F_FFC0, w1c 0, {}
+    /// Format of a frame buffer pixel.
+    ColourFormat "COLOUR_FORMAT" @ 0x020C [1] ReadWrite reset &[0], writable 0x3, w1c 0, {
+        1:0 "format" "0 XRGB8888, 1 ARGB8888, 2 RGB565";
+    }
+    /// First byte of the Z buffer in video memory, a multiple of 64. One 32-bit word a pixel.
+    DepthBase "DEPTH_BASE" @ 0x0210 [1] ReadWrite reset &[0], writable 0xFFFF_FFC0, w1c 0, {}
+    /// Bytes from one row of the Z buffer to the next, a multiple of 64.
+    DepthPitch "DEPTH_PITCH" @ 0x0214 [1] ReadWrite reset &[0], writable 0x000F_FFC0, w1c 0, {}
+    /// Number format of depth.
+    DepthFormat "DEPTH_FORMAT" @ 0x0218 [1] ReadWrite reset &[0x0000_1818], writable 0x0000_1F1F, w1c 0, {
+        12:8 "fraction" "fraction bits of the gradients: 0, 8, 16 or 24";
+        4:0 "bits" "bits of a depth: 16, 24 or 31";
+    }
+
+    // Path and accuracy: sampled by begin scene ----------------------------------------------
+    /// Hidden-surface path that decides visibility.
+    HiddenSurface "HIDDEN_SURFACE" @ 0x0240 [1] ReadWrite reset &[0], writable 0x3, w1c 0, {
+        1:0 "path" "0 zbuffer, 1 za, 2 systolic, 3 tile; CAPABILITY_PATHS says which exist";
+    }
+    /// Bits of a pixel that coordinates are snapped to.
+    SubpixelBits "SUBPIXEL_BITS" @ 0x0244 [1] ReadWrite reset &[8], writable 0xF, w1c 0, {
+        3:0 "bits" "4 or 8";
+    }
+
+    // Draw state: sampled by each draw -------------------------------------------------------
+    /// Effects the draws that follow call for.
+    Effects "EFFECTS" @ 0x0280 [1] ReadWrite reset &[0x1], writable 0x0000_0FFF, w1c 0, {
+        11:11 "stencil" "stencil test";
+        10:10 "anti_alias" "sub-pixel masks";
+        9:9 "punch_through" "texels decide visibility";
+        8:8 "blend" "translucency";
+        7:7 "fog" "fog and depth cueing";
+        6:6 "light" "lights and materials";
+        5:5 "mip_map" "MIP-mapped texture";
+        4:4 "texture" "texture";
+        3:3 "decal" "surface marking: depth through the DECAL matrix";
+        2:2 "perspective" "colours interpolated perspective-correct";
+        1:1 "gouraud" "colours interpolated between vertices; else the first vertex's colour";
+        0:0 "depth" "depth test";
+    }
+    /// Depth test.
+    DepthControl "DEPTH_CONTROL" @ 0x0284 [1] ReadWrite reset &[0x0000_0101], writable 0x0000_0107, w1c 0, {
+        8:8 "write" "1: a passing fragment's depth is stored";
+        2:0 "function" "0 never, 1 less, 2 equal, 3 less-equal, 4 greater, 5 not-equal, 6 greater-equal, 7 always";
+    }
+    /// Colour of primitives whose vertices carry none.
+    MaterialColour "MATERIAL_COLOUR" @ 0x0288 [1] ReadWrite reset &[0xFFFF_FFFF], writable 0xFFFF_FFFF, w1c 0, {
+        31:24 "alpha" "255 opaque";
+        23:16 "blue" "";
+        15:8 "green" "";
+        7:0 "red" "";
+    }
+    /// Object the draws that follow belong to; shown by the probe.
+    ObjectTag "OBJECT_TAG" @ 0x028C [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {}
+    /// First pixel inside the scissor.
+    ScissorMinimum "SCISSOR_MINIMUM" @ 0x0290 [1] ReadWrite reset &[0], writable 0x7FFF_7FFF, w1c 0, {
+        30:16 "y" "pixels, inclusive";
+        14:0 "x" "pixels, inclusive";
+    }
+    /// First pixel beyond the scissor; the target's size cuts it.
+    ScissorMaximum "SCISSOR_MAXIMUM" @ 0x0294 [1] ReadWrite reset &[0x7FFF_7FFF], writable 0x7FFF_7FFF, w1c 0, {
+        30:16 "y" "pixels, exclusive";
+        14:0 "x" "pixels, exclusive";
+    }
+
+    // Geometry: sampled by each draw ---------------------------------------------------------
+    /// Object to eye, 4x4 f32, row-major for row vectors.
+    ObjectEye "OBJECT_EYE" @ 0x0400 [16] ReadWrite reset IDENTITY, writable 0xFFFF_FFFF, w1c 0, {}
+    /// Decal transform in eye space, 4x4 f32: moves surface markings toward the viewer. In use where the effect `decal` is called; depth alone follows it, x and y are those of the undisplaced vertex.
+    Decal "DECAL" @ 0x0440 [16] ReadWrite reset IDENTITY, writable 0xFFFF_FFFF, w1c 0, {}
+    /// Eye to clip space, 4x4 f32; a point is inside where 0 <= z <= w and w > 0.
+    EyeClip "EYE_CLIP" @ 0x0480 [16] ReadWrite reset IDENTITY, writable 0xFFFF_FFFF, w1c 0, {}
+    /// Viewport, 6 f32: scale x, y, z, then offset x, y, z. Screen = clip / w * scale + offset: x, y in pixels, y down, z 0 near .. 1 far.
+    Viewport "VIEWPORT" @ 0x04C0 [6] ReadWrite reset &[ONE, ONE, ONE, 0, 0, 0], writable 0xFFFF_FFFF, w1c 0, {}
+
+    // Probe ----------------------------------------------------------------------------------
+    /// Pixel history.
+    ProbeControl "PROBE_CONTROL" @ 0x0600 [1] ReadWrite reset &[0], writable 1, w1c 0, {
+        0:0 "enable" "1 records every fragment that comes to the pixel";
+    }
+    /// The pixel watched.
+    ProbePixel "PROBE_PIXEL" @ 0x0604 [1] ReadWrite reset &[0], writable 0x7FFF_7FFF, w1c 0, {
+        30:16 "y" "pixels";
+        14:0 "x" "pixels";
+    }
+    /// First byte of the record area in video memory, a multiple of 64.
+    ProbeBase "PROBE_BASE" @ 0x0608 [1] ReadWrite reset &[0], writable 0xFFFF_FFC0, w1c 0, {}
+    /// Records that fit there; further fragments are counted but not recorded.
+    ProbeSize "PROBE_SIZE" @ 0x060C [1] ReadWrite reset &[0], writable 0x00FF_FFFF, w1c 0, {}
+    /// Fragments that have come to the pixel since the probe was enabled.
+    ProbeCount "PROBE_COUNT" @ 0x0610 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+
+    // Scan-out -------------------------------------------------------------------------------
+    /// Scan-out.
+    ScanoutControl "SCANOUT_CONTROL" @ 0x0680 [1] ReadWrite reset &[0], writable 1, w1c 0, {
+        0:0 "continuous" "1: a vertical blank every SCANOUT_PERIOD; 0: one for each present packet";
+    }
+    /// Time between vertical blanks in microseconds, 1000..=1000000; other values count as the nearest of these.
+    ScanoutPeriod "SCANOUT_PERIOD" @ 0x0684 [1] ReadWrite reset &[16_667], writable 0x001F_FFFF, w1c 0, {}
+    /// First byte of the frame shown; a present packet changes it at the vertical blank.
+    ScanoutBase "SCANOUT_BASE" @ 0x0688 [1] ReadWrite reset &[0], writable 0xFFFF_FFC0, w1c 0, {}
+    /// Bytes from one row of the frame shown to the next, a multiple of 64.
+    ScanoutPitch "SCANOUT_PITCH" @ 0x068C [1] ReadWrite reset &[0], writable 0x000F_FFC0, w1c 0, {}
+    /// Format of the frame shown; values as in COLOUR_FORMAT.
+    ScanoutFormat "SCANOUT_FORMAT" @ 0x0690 [1] ReadWrite reset &[0], writable 0x3, w1c 0, {
+        1:0 "format" "0 XRGB8888, 1 ARGB8888, 2 RGB565";
+    }
+    /// Size of the frame shown; 0 is a dark screen.
+    ScanoutSize "SCANOUT_SIZE" @ 0x0694 [1] ReadWrite reset &[0], writable 0x7FFF_7FFF, w1c 0, {
+        30:16 "height" "pixels";
+        14:0 "width" "pixels";
+    }
+    /// Vertical blanks since reset (modulo 2^32).
+    FrameCount "FRAME_COUNT" @ 0x0698 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+
+    // What the last scene called for, and what it cost ---------------------------------------
+    /// Effects called since begin scene; bits as in EFFECTS.
+    EffectsCalled "EFFECTS_CALLED" @ 0x0700 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
+    /// Units powered since begin scene.
+    UnitsPowered "UNITS_POWERED" @ 0x0704 [1] ReadOnly reset &[0], writable 0, w1c 0, {
+        11:11 "probe" "";
+        10:10 "scanout" "";
+        9:9 "bitmap" "";
+        8:8 "shading" "";
+        7:7 "texture" "";
+        6:6 "subpixel" "";
+        5:5 "tile" "";
+        4:4 "systolic" "";
+        3:3 "za" "";
+        2:2 "z_buffer" "";
+        1:1 "geometry" "";
+        0:0 "frontend" "";
+    }
+    /// Writing 1 sets every counter to 0.
+    CounterControl "COUNTER_CONTROL" @ 0x0708 [1] WriteOnly reset &[0], writable 1, w1c 0, {
+        0:0 "clear" "1 clears";
+    }
+    /// Counters, 64 bits each: low word, then high word; reading the low word latches the high one. The order is that of the counter list.
+    Counters "COUNTERS" @ 0x1000 [256] ReadOnly reset &[0], writable 0, w1c 0, {}
+}

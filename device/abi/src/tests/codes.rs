@@ -1,0 +1,156 @@
+//! Every code in a packet or register comes back from the value it stands for.
+
+use crate::FaultCode;
+use crate::format::{DepthFormat, DepthFunction, HiddenSurface, PixelFormat, Topology};
+use crate::packet::{DrawFlags, MAX_PAYLOAD, Opcode, header, payload_words};
+use std::collections::HashSet;
+use std::vec::Vec;
+
+// Enumerations -------------------------------------------------------------------------------
+
+#[test]
+fn opcode_codes_round_trip_and_no_other_code_is_one() {
+    for &opcode in Opcode::ALL {
+        assert_eq!(Opcode::from_code(opcode as u32), Some(opcode));
+        assert!(opcode as u32 <= 0xFF, "{}", opcode.name());
+        assert!(!opcode.doc().trim().is_empty(), "{}", opcode.name());
+    }
+    let known = (0..=0xFFFF).filter_map(Opcode::from_code).count();
+    assert_eq!(known, Opcode::ALL.len());
+}
+
+#[test]
+fn fault_codes_round_trip_and_zero_is_none() {
+    for &code in FaultCode::ALL {
+        assert_eq!(FaultCode::from_code(code as u32), Some(code));
+        assert!(!code.doc().trim().is_empty(), "{}", code.name());
+    }
+    let known = (0..=0xFFFF).filter_map(FaultCode::from_code).count();
+    assert_eq!(known, FaultCode::ALL.len());
+    assert_eq!(FaultCode::from_code(0), None);
+}
+
+/// Every code of an enumeration comes back; codes from 0 up to `$bits` bits beyond it mean nothing.
+macro_rules! round_trips {
+    ($($test:ident: $type:ident, $bits:literal;)+) => { $(
+        #[test]
+        fn $test() {
+            let found: Vec<_> = (0..1 << $bits).filter_map($type::from_code).collect();
+            assert_eq!(found, $type::ALL);
+            for (code, value) in (0..).zip($type::ALL) {
+                assert_eq!(value.code(), code);
+                assert_eq!(value.name().to_lowercase(), value.name());
+            }
+            let names: HashSet<_> = $type::ALL.iter().map(|v| v.name()).collect();
+            assert_eq!(names.len(), $type::ALL.len());
+            assert_eq!($type::from_code(u32::MAX), None);
+        }
+    )+ };
+}
+
+round_trips! {
+    pixel_format_codes_round_trip: PixelFormat, 8;
+    depth_function_codes_round_trip: DepthFunction, 8;
+    topology_codes_round_trip: Topology, 8;
+    hidden_surface_codes_round_trip: HiddenSurface, 8;
+}
+
+#[test]
+fn header_opcode_and_length_come_back() {
+    for &opcode in Opcode::ALL {
+        for payload in [0, 1, 1000, MAX_PAYLOAD] {
+            let word = header(opcode, payload);
+            assert_eq!(Opcode::from_code(word >> 24), Some(opcode));
+            assert_eq!(word & 0x00F0_0000, 0);
+            assert_eq!(payload_words(word), payload);
+        }
+    }
+    assert_eq!(header(Opcode::Fence, 1), 0x3000_0001);
+}
+
+#[test]
+fn draw_flags_round_trip_and_reserved_bits_are_refused() {
+    let valid: Vec<_> = (0..0x1000).filter(|&code| DrawFlags::from_code(code).is_some()).collect();
+    // 4 topologies, indexed or not, coloured or not.
+    assert_eq!(valid.len(), 16);
+    for code in valid {
+        assert_eq!(DrawFlags::from_code(code).map(DrawFlags::code), Some(code));
+    }
+    for bit in 12..32 {
+        assert_eq!(DrawFlags::from_code(1 << bit), None);
+    }
+    let plain = DrawFlags::from_code(0x000).map(DrawFlags::vertex_words);
+    let coloured = DrawFlags::from_code(0x100).map(DrawFlags::vertex_words);
+    assert_eq!((plain, coloured), (Some(3), Some(4)));
+}
+
+#[test]
+fn topology_primitives_leave_incomplete_ones_out() {
+    let made = |topology: Topology| [0, 1, 2, 3, 4, 7].map(|n| topology.primitives(n));
+    assert_eq!(made(Topology::Triangles), [0, 0, 0, 1, 1, 2]);
+    assert_eq!(made(Topology::Lines), [0, 0, 1, 1, 2, 3]);
+    assert_eq!(made(Topology::Points), [0, 1, 2, 3, 4, 7]);
+    assert_eq!(made(Topology::LineStrip), [0, 0, 1, 2, 3, 6]);
+}
+
+// Formats ------------------------------------------------------------------------------------
+
+#[test]
+fn pixel_format_encode_puts_channels_where_the_manual_has_them() {
+    let colour = [0x12, 0x34, 0x56, 0x78];
+    assert_eq!(PixelFormat::Xrgb8888.encode(colour), 0xFF12_3456);
+    assert_eq!(PixelFormat::Argb8888.encode(colour), 0x7812_3456);
+    assert_eq!(PixelFormat::Rgb565.encode([0xFF, 0, 0, 0]), 0xF800);
+    assert_eq!(PixelFormat::Rgb565.encode([0, 0xFF, 0, 0]), 0x07E0);
+    assert_eq!(PixelFormat::Rgb565.encode([0, 0, 0xFF, 0]), 0x001F);
+    assert_eq!(PixelFormat::ALL.len(), 3);
+    assert_eq!(PixelFormat::ALL[0].bytes(), 4);
+    assert_eq!(PixelFormat::ALL[1].bytes(), 4);
+    assert_eq!(PixelFormat::ALL[2].bytes(), 2);
+}
+
+#[test]
+fn pixel_format_decode_then_encode_is_the_stored_pixel() {
+    for pixel in 0..=0xFFFF {
+        let format = PixelFormat::Rgb565;
+        assert_eq!(format.encode(format.decode(pixel)), pixel);
+    }
+    for pixel in (0..=u32::MAX).step_by(0x0001_0421) {
+        let format = PixelFormat::Argb8888;
+        assert_eq!(format.encode(format.decode(pixel)), pixel);
+        let format = PixelFormat::Xrgb8888;
+        assert_eq!(format.encode(format.decode(pixel)), pixel | 0xFF00_0000);
+    }
+}
+
+#[test]
+fn pixel_format_decode_of_black_and_white_is_exact() {
+    for &format in PixelFormat::ALL {
+        for colour in [[0, 0, 0, 255], [255, 255, 255, 255]] {
+            assert_eq!(format.decode(format.encode(colour)), colour, "{}", format.name());
+        }
+    }
+}
+
+#[test]
+fn depth_format_all_twelve_round_trip() {
+    let codes: Vec<_> = (0..=0x1FFF)
+        .filter(|code| code & !0x1F1F == 0)
+        .filter(|&code| DepthFormat::from_code(code).is_some())
+        .collect();
+    assert_eq!(codes.len(), 12);
+    for code in codes {
+        assert_eq!(DepthFormat::from_code(code).map(DepthFormat::code), Some(code));
+    }
+    assert_eq!(DepthFormat::default().code(), 0x1818);
+}
+
+#[test]
+fn depth_format_maximum_is_all_bits_set() {
+    let maximum = |bits| DepthFormat::new(bits, 0).map(DepthFormat::maximum);
+    assert_eq!(maximum(16), Some(0xFFFF));
+    assert_eq!(maximum(24), Some(0x00FF_FFFF));
+    assert_eq!(maximum(31), Some(0x7FFF_FFFF));
+    assert_eq!(maximum(32), None);
+    assert_eq!(DepthFormat::new(24, 4), None);
+}
