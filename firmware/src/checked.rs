@@ -1,0 +1,158 @@
+//! What packets and registers become once they are checked.
+//!
+//! Invariants hold by construction in [`crate::Processor`]: every address range lies in video
+//! memory, every alignment is right, every enumeration has a meaning. Units do not check again.
+
+use zga_abi::Effects;
+use zga_abi::format::{DepthFormat, DepthFunction, HiddenSurface, PixelFormat, Topology};
+
+/// A rectangle of pixels: `x`, `y` inclusive, `right`, `bottom` exclusive.
+///
+/// # Invariants
+/// `x <= right` and `y <= bottom`; it is empty where they are equal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rectangle {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// First column beyond.
+    pub right: u32,
+    /// First row beyond.
+    pub bottom: u32,
+}
+
+/// Pixels in video memory.
+///
+/// # Invariants
+/// `base + (height - 1) * pitch + width * format.bytes()` lies in video memory; for render and
+/// scan-out targets `base` and `pitch` are multiples of 64, so a row holds whole chunks of 16 words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Surface {
+    /// First byte.
+    pub base: u32,
+    /// Bytes from a row to the next.
+    pub pitch: u32,
+    /// Pixels, 1..=16384.
+    pub width: u32,
+    /// Pixels, 1..=16384.
+    pub height: u32,
+    /// Format of a pixel.
+    pub format: PixelFormat,
+}
+
+/// Depths in video memory, one 32-bit word a pixel; the size is that of the target.
+///
+/// # Invariants
+/// `base` and `pitch` are multiples of 64; all `height` rows of `pitch` bytes lie in video memory
+/// and apart from the frame buffer's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DepthSurface {
+    /// First byte.
+    pub base: u32,
+    /// Bytes from a row to the next, at least 4 times the width.
+    pub pitch: u32,
+}
+
+/// What a scene draws to, and how; fixed from begin scene to end scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// Frame buffer. All `height` rows of `pitch` bytes lie in video memory.
+    pub colour: Surface,
+    /// Z buffer, if there is one (DEPTH_PITCH is not 0).
+    pub depth: Option<DepthSurface>,
+    /// Number format of depth.
+    pub depth_format: DepthFormat,
+    /// Bits of a pixel that coordinates are snapped to: 4 or 8.
+    pub subpixel_bits: u32,
+    /// Who decides visibility.
+    pub hidden_surface: HiddenSurface,
+}
+
+/// State of one draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawState {
+    /// Effects called; DEPTH only where the target has a Z buffer.
+    pub effects: Effects,
+    /// Depth test.
+    pub depth_function: DepthFunction,
+    /// A passing fragment's depth is stored.
+    pub depth_write: bool,
+    /// RGBA of primitives without vertex colours, R in 7:0.
+    pub material_colour: u32,
+    /// Object tag.
+    pub tag: u32,
+    /// Pixels that may change: the scissor cut to the target; can be empty.
+    pub scissor: Rectangle,
+}
+
+/// A run of words, in the packet or in video memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Words<'a> {
+    /// In the packet.
+    Inline(&'a [u32]),
+    /// In video memory.
+    Memory {
+        /// First byte, a multiple of 4.
+        address: u32,
+        /// Number of words; the whole run lies in video memory.
+        words: u32,
+    },
+}
+
+/// Primitives to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Draw<'a> {
+    /// How vertices make primitives.
+    pub topology: Topology,
+    /// A vertex is x, y, z (f32 bits) and, if set, a colour word.
+    pub coloured: bool,
+    /// Vertex words: `vertex_count` times 3 or 4.
+    pub vertices: Words<'a>,
+    /// Number of vertices.
+    pub vertex_count: u32,
+    /// Indices, each less than `vertex_count` when the draw was checked.
+    pub indices: Option<Words<'a>>,
+}
+
+/// A clear inside a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Clear {
+    /// Colour for the frame buffer, RGBA with R in 7:0.
+    pub colour: Option<u32>,
+    /// Depth for the Z buffer, at most the format's maximum; only where the target has one.
+    pub depth: Option<u32>,
+    /// Pixels to clear: the scissor cut to the target; can be empty.
+    pub area: Rectangle,
+}
+
+/// A rectangle of one stored pixel value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fill {
+    /// Pixels to fill: `base` is the first of them, a multiple of the pixel's bytes, as is `pitch`.
+    pub surface: Surface,
+    /// Stored value; the low 16 bits for 16-bit formats.
+    pub value: u32,
+}
+
+/// A copy between two surfaces of the same format and size; overlap must come out right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Copy {
+    /// From: `base` is the first pixel copied.
+    pub source: Surface,
+    /// To: `base` is the first pixel written.
+    pub destination: Surface,
+}
+
+/// Rows of words in video memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rows {
+    /// First byte, a multiple of 4.
+    pub address: u32,
+    /// Bytes from a row to the next, a multiple of 4.
+    pub pitch: u32,
+    /// Words of a row.
+    pub words: u32,
+    /// Rows.
+    pub rows: u32,
+}

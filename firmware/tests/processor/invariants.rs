@@ -1,0 +1,158 @@
+//! What every argument of a hardware call promises, said again without the firmware's code.
+
+use crate::mock::Mock;
+use zga_abi::format::{DepthFormat, HiddenSurface, PixelFormat};
+use zga_abi::{Access, Effects, Reg, Units};
+use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Rows, Surface, Target, Words};
+
+fn memory(mock: &Mock) -> u64 {
+    u64::from(mock.get(0x0010))
+}
+
+/// A register changes only where packets or the firmware itself may change it.
+pub fn register_write(register: Reg, word: u32, old: u32, value: u32) {
+    let info = register.info();
+    assert!(word < info.count);
+    if matches!(register, Reg::EffectsCalled | Reg::UnitsPowered) {
+        assert_ne!(old, value, "{} is set only when it changes", info.name);
+        assert_eq!(value & !0xFFF, 0);
+        return;
+    }
+    let offset = info.word_offset(word);
+    assert!((0x48..0x50).contains(&offset) || (0x200..0x700).contains(&offset));
+    assert_eq!(info.access, Access::ReadWrite, "{}", info.name);
+    assert_eq!((old ^ value) & !info.writable, 0, "{}", info.name);
+    match register {
+        Reg::ColourFormat | Reg::ScanoutFormat => assert!(value & 3 <= 2),
+        Reg::SubpixelBits => assert!(value == 4 || value == 8),
+        Reg::DepthFormat => assert!(DepthFormat::from_code(value).is_some()),
+        _ => {}
+    }
+}
+
+/// A run of words in video memory.
+pub fn run(mock: &Mock, address: u32, words: u64) {
+    assert_eq!(address % 4, 0);
+    assert!(words == 0 || u64::from(address) + 4 * words <= memory(mock));
+}
+
+/// A run of words anywhere.
+pub fn words(mock: &Mock, words: &Words<'_>) {
+    if let &Words::Memory { address, words } = words {
+        run(mock, address, u64::from(words));
+    }
+}
+
+/// The words of a run; 0 where the mock's memory holds nothing.
+pub fn each(mock: &Mock, words: &Words<'_>) -> impl Iterator<Item = u32> {
+    let all: Vec<u32> = match *words {
+        Words::Inline(words) => words.to_vec(),
+        Words::Memory { address, words } => {
+            (0..words).map(|k| mock.memory.get(&(address + 4 * k)).copied().unwrap_or(0)).collect()
+        }
+    };
+    all.into_iter()
+}
+
+/// Pixels for the bitmap unit.
+pub fn surface(mock: &Mock, surface: &Surface) {
+    let pixel = surface.format.bytes();
+    assert!((1..=16384).contains(&surface.width));
+    assert!((1..=16384).contains(&surface.height));
+    assert_eq!(surface.base % pixel, 0);
+    assert_eq!(surface.pitch % pixel, 0);
+    assert!(surface.pitch >= surface.width * pixel);
+    let rows = u64::from(surface.height - 1) * u64::from(surface.pitch);
+    let end = u64::from(surface.base) + rows + u64::from(surface.width * pixel);
+    assert!(end <= memory(mock), "{surface:?}");
+}
+
+/// Rows of words.
+pub fn rows(mock: &Mock, rows: &Rows) {
+    assert!(rows.words > 0 && rows.rows > 0);
+    assert_eq!((rows.address % 4, rows.pitch % 4), (0, 0));
+    let last = u64::from(rows.rows - 1) * u64::from(rows.pitch);
+    let end = u64::from(rows.address) + last + 4 * u64::from(rows.words);
+    assert!(end <= memory(mock), "{rows:?}");
+}
+
+/// Whole rows on chunk boundaries; start and end of what they take.
+fn frame(mock: &Mock, base: u32, pitch: u32, row_bytes: u32, height: u32) -> (u64, u64) {
+    assert_eq!((base % 64, pitch % 64), (0, 0));
+    assert!(pitch >= row_bytes);
+    let end = u64::from(base) + u64::from(pitch) * u64::from(height);
+    assert!(end <= memory(mock));
+    (u64::from(base), end)
+}
+
+/// The target of a scene.
+pub fn target(mock: &Mock, target: &Target) {
+    let colour = &target.colour;
+    surface(mock, colour);
+    let row_bytes = colour.width * colour.format.bytes();
+    let a = frame(mock, colour.base, colour.pitch, row_bytes, colour.height);
+    if let Some(depth) = target.depth {
+        let b = frame(mock, depth.base, depth.pitch, colour.width * 4, colour.height);
+        assert!(a.1 <= b.0 || b.1 <= a.0, "{target:?}");
+    }
+    assert!(matches!(target.subpixel_bits, 4 | 8));
+    assert_ne!(mock.get(0x000C) & (1 << target.hidden_surface.code()), 0);
+}
+
+/// Pixels inside a target.
+fn inside(target: &Target, rectangle: &Rectangle) {
+    assert!(rectangle.x <= rectangle.right && rectangle.y <= rectangle.bottom);
+    assert!(rectangle.right <= target.colour.width);
+    assert!(rectangle.bottom <= target.colour.height);
+}
+
+/// A clear.
+pub fn clear(target: &Target, clear: &Clear) {
+    inside(target, &clear.area);
+    assert!(clear.colour.is_some() || clear.depth.is_some());
+    if let Some(depth) = clear.depth {
+        assert!(target.depth.is_some());
+        assert!(depth <= target.depth_format.maximum());
+    }
+}
+
+/// A draw.
+pub fn draw(mock: &Mock, target: &Target, state: &DrawState, draw: &Draw<'_>) {
+    inside(target, &state.scissor);
+    assert_eq!(state.effects.bits() & !mock.get(0x0008), 0);
+    assert!(target.depth.is_some() || !state.effects.contains(Effects::DEPTH));
+    words(mock, &draw.vertices);
+    let vertex_words = if draw.coloured { 4 } else { 3 };
+    let given = match draw.vertices {
+        Words::Inline(words) => words.len() as u64,
+        Words::Memory { words, .. } => u64::from(words),
+    };
+    assert_eq!(given, u64::from(draw.vertex_count) * vertex_words);
+    if let Some(indices) = draw.indices {
+        words(mock, &indices);
+        assert!(each(mock, &indices).all(|index| index < draw.vertex_count));
+    }
+}
+
+/// The frame shown when it begins at `base`; its width and height.
+pub fn shown(mock: &Mock, base: u32) -> (u32, u32) {
+    let size = mock.get(0x0694);
+    let (width, height) = (size & 0x7FFF, (size >> 16) & 0x7FFF);
+    assert_eq!(base % 64, 0);
+    if width != 0 && height != 0 {
+        assert!(width <= 16384 && height <= 16384);
+        let format = PixelFormat::from_code(mock.get(0x0690)).expect("a format");
+        frame(mock, base, mock.get(0x068C), width * format.bytes(), height);
+    }
+    (width, height)
+}
+
+/// The unit of a target's hidden-surface path.
+pub fn path_unit(target: &Target) -> Units {
+    match target.hidden_surface {
+        HiddenSurface::ZBuffer => Units::Z_BUFFER,
+        HiddenSurface::Za => Units::ZA,
+        HiddenSurface::Systolic => Units::SYSTOLIC,
+        HiddenSurface::Tile => Units::TILE,
+    }
+}

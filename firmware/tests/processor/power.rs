@@ -1,0 +1,199 @@
+//! Effects called and units powered.
+
+use crate::bench::{Bench, TRIANGLE};
+use crate::mock::Call;
+use zga_abi::{Effects, Units};
+
+const GOURAUD: u32 = 1 << 1;
+const PERSPECTIVE: u32 = 1 << 2;
+
+/// What every draw on the plain Z buffer needs.
+fn plain() -> Units {
+    Units::FRONTEND | Units::GEOMETRY | Units::Z_BUFFER
+}
+
+/// Draws a triangle with these effects; with colours if asked for.
+fn draw(bench: &mut Bench, effects: u32, coloured: bool) -> Vec<Call> {
+    bench.card.set(0x0280, effects);
+    let plain = [&[0x000, 3, 0], &TRIANGLE[..]].concat();
+    let colours = [&[0x100, 3, 0], &[0; 12][..]].concat();
+    bench.good(0x10, if coloured { &colours } else { &plain })
+}
+
+#[test]
+fn new_processor_has_powered_nothing() {
+    let bench = Bench::new();
+    assert_eq!(bench.processor.units_powered(), Units::empty());
+    assert_eq!(bench.processor.effects_called(), Effects::empty());
+}
+
+#[test]
+fn begin_scene_powers_the_front_end_alone_before_the_scene_begins() {
+    let calls = Bench::with_target().good(0x02, &[]);
+    assert_eq!(calls[0], Call::Power(Units::FRONTEND));
+    assert_eq!(calls[1], Call::SetRegister(0x0704, 0x001));
+    assert!(matches!(calls[2..], [Call::BeginScene(_)]));
+}
+
+#[test]
+fn begin_scene_keeps_continuous_scanout_powered() {
+    let mut bench = Bench::with_target();
+    bench.card.set(0x0680, 1);
+    bench.good(0x02, &[]);
+    assert_eq!(bench.card.units, Units::FRONTEND | Units::SCANOUT);
+}
+
+#[test]
+fn begin_scene_takes_power_and_effects_of_the_last_scene_away() {
+    let mut bench = Bench::in_scene();
+    draw(&mut bench, 0xFFF, true);
+    bench.good(0x31, &[0]);
+    bench.good(0x03, &[]);
+    assert_ne!(bench.processor.effects_called(), Effects::empty());
+    let calls = bench.good(0x02, &[]);
+    assert_eq!(calls[0], Call::SetRegister(0x0700, 0));
+    assert_eq!(calls[1], Call::Power(Units::FRONTEND));
+    assert_eq!(calls[2], Call::SetRegister(0x0704, 0x001));
+    assert_eq!(bench.processor.effects_called(), Effects::empty());
+    assert_eq!(bench.processor.units_powered(), Units::FRONTEND);
+}
+
+#[test]
+fn draw_each_effect_powers_its_unit_and_no_other() {
+    let cases = [
+        (Effects::DEPTH, Units::empty()),
+        (Effects::GOURAUD, Units::SHADING),
+        (Effects::DECAL, Units::empty()),
+        (Effects::TEXTURE, Units::TEXTURE),
+        (Effects::MIP_MAP, Units::TEXTURE),
+        (Effects::LIGHT, Units::SHADING),
+        (Effects::FOG, Units::SHADING),
+        (Effects::BLEND, Units::SHADING),
+        (Effects::PUNCH_THROUGH, Units::TEXTURE),
+        (Effects::ANTI_ALIAS, Units::SUBPIXEL),
+        (Effects::STENCIL, Units::empty()),
+        (Effects::GOURAUD.union(Effects::PERSPECTIVE), Units::SHADING),
+        (Effects::TEXTURE.union(Effects::PERSPECTIVE), Units::TEXTURE),
+    ];
+    for (effects, units) in cases {
+        let mut bench = Bench::in_scene();
+        let calls = draw(&mut bench, effects.bits(), true);
+        let powered = plain() | units;
+        assert_eq!(calls[0], Call::SetRegister(0x0700, effects.bits()));
+        assert_eq!(calls[1], Call::Power(powered), "{effects:?}");
+        assert_eq!(calls[2], Call::SetRegister(0x0704, powered.bits()));
+        assert!(matches!(calls[3..], [Call::Draw(..)]));
+        assert_eq!(bench.processor.effects_called(), effects);
+        assert_eq!(bench.processor.units_powered(), powered);
+    }
+}
+
+#[test]
+fn draw_on_each_path_powers_its_unit() {
+    let paths = [Units::Z_BUFFER, Units::ZA, Units::SYSTOLIC, Units::TILE];
+    for (path, unit) in (0..).zip(paths) {
+        let mut bench = Bench::with_target();
+        bench.card.set(0x0240, path);
+        bench.good(0x02, &[]);
+        draw(&mut bench, 1, false);
+        let units = Units::FRONTEND | Units::GEOMETRY | unit;
+        assert_eq!(bench.card.units, units);
+    }
+}
+
+#[test]
+fn draw_gouraud_without_vertex_colours_is_not_called() {
+    let mut bench = Bench::in_scene();
+    draw(&mut bench, 1 | GOURAUD | PERSPECTIVE, false);
+    assert_eq!(bench.processor.effects_called(), Effects::DEPTH);
+    assert_eq!(bench.card.units, plain());
+}
+
+#[test]
+fn draw_gouraud_points_interpolate_nothing() {
+    let mut bench = Bench::in_scene();
+    bench.card.set(0x0280, GOURAUD);
+    bench.good(0x10, &[0x102, 1, 0, 0, 0, 0, 0]);
+    assert_eq!(bench.processor.effects_called(), Effects::empty());
+    assert_eq!(bench.card.units, plain());
+}
+
+#[test]
+fn draw_effects_add_up_over_the_scene() {
+    let mut bench = Bench::in_scene();
+    draw(&mut bench, 0x001, false);
+    draw(&mut bench, 0x008, false);
+    draw(&mut bench, GOURAUD, true);
+    assert_eq!(bench.card.get(0x0700), 0x00B);
+    assert_eq!(bench.card.get(0x0704), (plain() | Units::SHADING).bits());
+}
+
+#[test]
+fn draw_again_with_the_same_effects_changes_no_power_and_no_register() {
+    let mut bench = Bench::in_scene();
+    draw(&mut bench, 0x003, true);
+    let calls = draw(&mut bench, 0x003, true);
+    assert!(matches!(calls[..], [Call::Draw(..)]));
+}
+
+#[test]
+fn draw_that_makes_no_primitive_calls_for_nothing() {
+    let mut bench = Bench::in_scene();
+    bench.card.set(0x0280, 0xFFF);
+    bench.good(0x10, &[0, 0, 0]);
+    assert_eq!(bench.processor.effects_called(), Effects::empty());
+    assert_eq!(bench.card.units, Units::FRONTEND);
+}
+
+#[test]
+fn clear_powers_the_path_without_geometry() {
+    for planes in 1..4 {
+        let mut bench = Bench::in_scene();
+        bench.good(0x04, &[planes, 0, 0]);
+        assert_eq!(bench.card.units, Units::FRONTEND | Units::Z_BUFFER);
+        assert_eq!(bench.processor.effects_called(), Effects::empty());
+    }
+}
+
+#[test]
+fn probe_is_powered_by_clears_and_draws_while_enabled() {
+    let mut bench = Bench::in_scene();
+    bench.card.set(0x0600, 1);
+    bench.good(0x04, &[1, 0, 0]);
+    let clear = Units::FRONTEND | Units::Z_BUFFER | Units::PROBE;
+    assert_eq!(bench.card.units, clear);
+
+    let mut bench = Bench::in_scene();
+    bench.card.set(0x0600, 1);
+    draw(&mut bench, 1, false);
+    assert_eq!(bench.card.units, plain() | Units::PROBE);
+}
+
+#[test]
+fn bitmap_packets_power_the_bitmap_unit() {
+    let packets: [(u32, &[u32]); 4] = [
+        (0x20, &[0, 64, 0, 0, 0, 1, 1, 0]),
+        (0x21, &[0, 0, 64, 0, 0, 64, 64, 0, 0, 1, 1]),
+        (0x22, &[0, 4, 1, 1, 0]),
+        (0x23, &[0, 4, 1, 1, 8]),
+    ];
+    for (opcode, payload) in packets {
+        let mut bench = Bench::new();
+        bench.good(opcode, payload);
+        assert_eq!(bench.card.units, Units::FRONTEND | Units::BITMAP);
+        assert_eq!(bench.card.get(0x0704), bench.card.units.bits());
+    }
+}
+
+#[test]
+fn present_and_write_back_power_scanout() {
+    let mut bench = Bench::new();
+    bench.good(0x31, &[0]);
+    assert_eq!(bench.card.units, Units::FRONTEND | Units::SCANOUT);
+
+    let mut bench = Bench::new();
+    bench.card.set(0x068C, 64);
+    bench.card.set(0x0694, (1 << 16) | 1);
+    bench.good(0x32, &[64]);
+    assert_eq!(bench.card.units, Units::FRONTEND | Units::SCANOUT);
+}

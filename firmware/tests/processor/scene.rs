@@ -1,0 +1,208 @@
+//! BEGIN_SCENE, END_SCENE, CLEAR.
+
+use crate::bench::Bench;
+use crate::mock::{Call, MEMORY};
+use zga_abi::format::{DepthFormat, HiddenSurface, PixelFormat};
+use zga_abi::{Fault, FaultCode};
+use zga_firmware::Stopped;
+use zga_firmware::checked::{Clear, DepthSurface, Rectangle, Surface, Target};
+
+const WHOLE: Rectangle = Rectangle { x: 0, y: 0, right: 64, bottom: 32 };
+
+#[test]
+fn begin_scene_samples_the_target() {
+    let mut bench = Bench::with_target();
+    bench.card.set(0x0218, 0x0810);
+    bench.card.set(0x0240, 2);
+    bench.card.set(0x0244, 4);
+    let call = bench.last(0x02, &[]);
+    let target = Target {
+        colour: Surface { base: 0x1000, pitch: 256, width: 64, height: 32, format: PixelFormat::Xrgb8888 },
+        depth: Some(DepthSurface { base: 0x4000, pitch: 256 }),
+        depth_format: DepthFormat::new(16, 8).expect("a format"),
+        subpixel_bits: 4,
+        hidden_surface: HiddenSurface::Systolic,
+    };
+    assert_eq!(call, Call::BeginScene(target));
+    assert_eq!(bench.processor.target(), Some(&target));
+    assert!(bench.processor.in_scene());
+}
+
+#[test]
+fn begin_scene_with_depth_pitch_zero_has_no_z_buffer() {
+    let mut bench = Bench::with_target();
+    bench.card.set(0x0214, 0);
+    bench.card.set(0x0210, 0xFFFF_FFFF);
+    bench.good(0x02, &[]);
+    assert_eq!(bench.processor.target().map(|t| t.depth), Some(None));
+}
+
+#[test]
+fn begin_scene_with_a_register_at_fault_names_its_offset() {
+    use FaultCode::{BadAlignment, BadValue, OutOfMemory, Overlap};
+    let size = |width: u32, height: u32| (height << 16) | width;
+    // Register, value, code, register at fault.
+    let cases = [
+        (0x0200, size(0, 32), BadValue, 0x0200),
+        (0x0200, size(64, 0), BadValue, 0x0200),
+        (0x0200, size(16385, 1), BadValue, 0x0200),
+        (0x0200, size(1, 16385), BadValue, 0x0200),
+        (0x0200, size(65, 1), BadValue, 0x0208), // a row is longer than the pitch
+        (0x0204, 0x1020, BadAlignment, 0x0204),
+        (0x0204, MEMORY - 0x1FC0, OutOfMemory, 0x0204),
+        (0x0204, 0xFFFF_FFC0, OutOfMemory, 0x0204),
+        (0x0208, 0x0110, BadAlignment, 0x0208),
+        (0x0208, 192, BadValue, 0x0208),
+        (0x0208, 0xFFFF_FFC0, OutOfMemory, 0x0204),
+        (0x020C, 3, BadValue, 0x020C),
+        (0x020C, 0xFFFF_FFFF, BadValue, 0x020C),
+        (0x0210, 0x4004, BadAlignment, 0x0210),
+        (0x0210, MEMORY - 0x1FC0, OutOfMemory, 0x0210),
+        (0x0210, 0x1000, Overlap, 0x0210),
+        (0x0210, 0x2FC0, Overlap, 0x0210),
+        (0x0204, 0x2040, Overlap, 0x0210),
+        (0x0214, 0x0101, BadAlignment, 0x0214),
+        (0x0214, 192, BadValue, 0x0214),
+        (0x0218, 0, BadValue, 0x0218),
+        (0x0218, 0x1820, BadValue, 0x0218),
+        (0x0240, 4, BadValue, 0x0240),
+        (0x0244, 6, BadValue, 0x0244),
+    ];
+    for (register, value, code, at_fault) in cases {
+        let mut bench = Bench::with_target();
+        bench.card.set(register, value);
+        bench.bad(0x02, &[], code, 0, at_fault);
+    }
+}
+
+#[test]
+fn begin_scene_on_the_last_bytes_and_side_by_side_is_legal() {
+    let mut bench = Bench::with_target();
+    bench.card.set(0x0204, MEMORY - 0x2000);
+    bench.card.set(0x0210, MEMORY - 0x4000);
+    bench.good(0x02, &[]);
+}
+
+#[test]
+fn begin_scene_of_the_largest_side_is_legal() {
+    let mut bench = Bench::with_target();
+    bench.card.set(0x0200, (1 << 16) | 16384);
+    bench.card.set(0x0208, 0x8000);
+    bench.card.set(0x020C, 2);
+    bench.card.set(0x0210, 0x2_0000);
+    bench.card.set(0x0214, 0x1_0000);
+    bench.good(0x02, &[]);
+}
+
+#[test]
+fn begin_scene_on_a_path_the_card_lacks_is_unsupported() {
+    let mut bench = Bench::with_target();
+    bench.card.set(0x000C, 0b0001);
+    bench.card.set(0x0240, 1);
+    bench.bad(0x02, &[], FaultCode::Unsupported, 0, 0x0240);
+}
+
+#[test]
+fn begin_scene_in_a_scene_is_refused() {
+    Bench::in_scene().bad(0x02, &[], FaultCode::InsideScene, 0, 0x0200_0000);
+}
+
+#[test]
+fn end_scene_ends_and_another_may_begin() {
+    let mut bench = Bench::in_scene();
+    assert_eq!(bench.good(0x03, &[]), [Call::EndScene]);
+    assert!(!bench.processor.in_scene());
+    assert_eq!(bench.processor.target(), None);
+    bench.good(0x02, &[]);
+}
+
+#[test]
+fn end_scene_clear_and_draws_outside_a_scene_are_refused() {
+    let mut bench = Bench::with_target();
+    bench.bad(0x03, &[], FaultCode::OutsideScene, 0, 0x0300_0000);
+    bench.bad(0x04, &[1, 0, 0], FaultCode::OutsideScene, 0, 0x0400_0003);
+    bench.bad(0x10, &[0, 0, 0], FaultCode::OutsideScene, 0, 0x1000_0003);
+    bench.bad(0x11, &[0; 5], FaultCode::OutsideScene, 0, 0x1100_0005);
+}
+
+#[test]
+fn end_scene_that_the_watchdog_stops_faults_and_is_over() {
+    let mut bench = Bench::in_scene();
+    bench.card.stop = Some(Stopped::Watchdog);
+    let (result, calls) = bench.run(&[0x0300_0000]);
+    assert_eq!(result, Err(Fault::new(FaultCode::Watchdog, 0, 0)));
+    assert_eq!(calls, [Call::EndScene]);
+    assert!(!bench.processor.in_scene());
+}
+
+#[test]
+fn end_scene_that_a_reset_stops_is_no_fault() {
+    let mut bench = Bench::in_scene();
+    bench.card.stop = Some(Stopped::Reset);
+    bench.good(0x03, &[]);
+}
+
+#[test]
+fn reset_in_a_scene_is_as_after_power_on() {
+    let mut bench = Bench::in_scene();
+    bench.processor.reset();
+    assert!(!bench.processor.in_scene());
+    assert_eq!(bench.processor.state(), Bench::new().processor.state());
+}
+
+#[test]
+fn clear_of_each_set_of_planes_reaches_the_card() {
+    let cases = [(1, Some(0x1122_3344), None), (2, None, Some(0x00FF_FFFF)), (3, Some(0x1122_3344), Some(0x00FF_FFFF))];
+    for (planes, colour, depth) in cases {
+        let call = Bench::in_scene().last(0x04, &[planes, 0x1122_3344, 0x00FF_FFFF]);
+        let clear = Clear { colour, depth, area: WHOLE };
+        assert_eq!(call, Call::Clear(clear));
+    }
+}
+
+#[test]
+fn clear_without_planes_does_nothing() {
+    assert_eq!(Bench::in_scene().good(0x04, &[0, 1, 2]), []);
+}
+
+#[test]
+fn clear_of_unknown_planes_is_a_bad_value() {
+    for planes in [4, 7, 0x8000_0001] {
+        Bench::in_scene().bad(0x04, &[planes, 0, 0], FaultCode::BadValue, 1, planes);
+    }
+}
+
+#[test]
+fn clear_of_a_depth_above_the_maximum_is_a_bad_value_only_if_it_is_used() {
+    let mut bench = Bench::in_scene();
+    bench.bad(0x04, &[2, 0, 0x0100_0000], FaultCode::BadValue, 3, 0x0100_0000);
+    bench.bad(0x04, &[3, 0, 0xFFFF_FFFF], FaultCode::BadValue, 3, 0xFFFF_FFFF);
+    bench.good(0x04, &[1, 0, 0xFFFF_FFFF]);
+}
+
+#[test]
+fn clear_of_depth_without_z_buffer_is_a_bad_value() {
+    let mut bench = Bench::in_scene_without_depth();
+    bench.bad(0x04, &[3, 0, 0], FaultCode::BadValue, 1, 3);
+    bench.good(0x04, &[1, 0, 0]);
+}
+
+#[test]
+fn clear_area_is_the_scissor_cut_to_the_target() {
+    let at = |x: u32, y: u32| (y << 16) | x;
+    let rectangle = |x, y, right, bottom| Rectangle { x, y, right, bottom };
+    let cases = [
+        (at(3, 4), at(10, 20), rectangle(3, 4, 10, 20)),
+        (at(3, 4), at(1000, 1000), rectangle(3, 4, 64, 32)),
+        (at(100, 100), at(200, 200), rectangle(64, 32, 64, 32)),
+        (at(20, 20), at(10, 10), rectangle(10, 10, 10, 10)),
+        (0x8000_8001, 0xFFFF_FFFF, rectangle(1, 0, 64, 32)),
+    ];
+    for (minimum, maximum, area) in cases {
+        let mut bench = Bench::in_scene();
+        bench.card.set(0x0290, minimum);
+        bench.card.set(0x0294, maximum);
+        let expected = Clear { colour: Some(0), depth: None, area };
+        assert_eq!(bench.last(0x04, &[1, 0, 0]), Call::Clear(expected));
+    }
+}
