@@ -1,0 +1,282 @@
+//! The card: its blocks, the wires between them, and the step loop of its own thread.
+//!
+//! Duties: wires the firmware to the units; steps the front end; serves reset, save, restore and
+//! power-off between two packets.
+//! Inputs: packets, requests. Outputs: none of its own. Clocks: none of its own.
+//!
+//! The card's thread holds video memory while it works, and lets go between two packets when the
+//! host waits for it, so a burst of the host sees memory before or after a packet, never within one.
+
+use crate::bitmap::{Bitmap, fill, transfer};
+use crate::bus::backplane::Backplane;
+use crate::frontend::control::{ControlPort, Request};
+use crate::frontend::{Frontend, Wired, charge_packet};
+use crate::geometry::GeometryRegisters;
+use crate::memory::VideoMemory;
+use crate::pipeline::Pipeline;
+use crate::probe::account::{Account, Clocks};
+use crate::probe::{Probe, snapshot};
+use crate::scanout::Scanout;
+use parking_lot::MutexGuard;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::SeqCst;
+use zga_abi::bus::INTERRUPT_FENCE;
+use zga_abi::{Counter, Fault, Reg, Units};
+use zga_firmware::checked::{Clear, Copy, Draw, DrawState, Fill, Rows, Target, Words};
+use zga_firmware::{Hardware, Processor, ProcessorState, Stopped};
+
+/// Units that [`Pipeline`] stands for.
+const PIPELINE: Units = Units::GEOMETRY.union(Units::Z_BUFFER).union(Units::SHADING);
+/// WATCHDOG counts in units of this many clocks.
+const WATCHDOG_UNIT: u64 = 1 << 20;
+
+/// The blocks that only the card's own thread touches.
+pub(crate) struct Blocks {
+    pub(crate) pipeline: Pipeline,
+    pub(crate) bitmap: Bitmap,
+    pub(crate) scanout: Scanout,
+    pub(crate) probe: Probe,
+    /// What was counted since it was last published.
+    pub(crate) account: Account,
+    pub(crate) powered: Units,
+}
+
+/// The card's side of everything.
+pub(crate) struct Board {
+    pub(crate) backplane: Arc<Backplane>,
+    pub(crate) control: ControlPort,
+    pub(crate) frontend: Frontend,
+    pub(crate) blocks: Blocks,
+}
+
+impl Board {
+    /// The card's thread: until power-off.
+    pub(crate) fn run(mut self) {
+        while self.attend() {
+            self.work();
+            self.rest();
+        }
+    }
+
+    /// Steps until there is nothing to do, or the host has a request.
+    fn work(&mut self) {
+        let Board { backplane, control, frontend, blocks } = self;
+        let mut wiring = Wiring { memory: backplane.memory.lock(), backplane, blocks };
+        while control.requests.is_empty() {
+            let stepped = frontend.step(&mut wiring);
+            wiring.tick();
+            if !stepped {
+                break;
+            }
+            MutexGuard::bump(&mut wiring.memory);
+        }
+        wiring.publish();
+    }
+
+    /// Sleeps until somebody rings, or a vertical blank is due.
+    fn rest(&mut self) {
+        let due = self.blocks.scanout.deadline(&self.backplane);
+        self.backplane.active.store(false, SeqCst);
+        // All ends of the wait mean the same: look for work.
+        let _ = match due {
+            Some(due) => self.control.bell.recv_deadline(due).ok(),
+            None => self.control.bell.recv().ok(),
+        };
+        self.backplane.active.store(true, SeqCst);
+    }
+
+    /// Serves the host's requests; false at power-off.
+    fn attend(&mut self) -> bool {
+        // A stop comes just before its request: that one is waited for.
+        while self.backplane.control.stopping() || !self.control.requests.is_empty() {
+            match self.control.requests.recv() {
+                // An answer that nobody waits for any more is no harm.
+                Ok(Request::Reset(done)) => {
+                    self.reset();
+                    let _ = done.send(());
+                }
+                Ok(Request::Save(done)) => {
+                    let _ = done.send(snapshot::save(self));
+                }
+                Ok(Request::Restore(state, done)) => {
+                    let _ = done.send(snapshot::restore(self, &state));
+                }
+                Ok(Request::PowerOff) | Err(_) => return false,
+            }
+        }
+        true
+    }
+
+    /// The command processor of a snapshot, checked against this card.
+    pub(crate) fn processor_of(&mut self, state: &ProcessorState) -> Result<Processor, Fault> {
+        let Board { backplane, blocks, .. } = self;
+        Processor::from_state(&Wiring { memory: backplane.memory.lock(), backplane, blocks }, state)
+    }
+
+    /// Soft reset of every block; both memories stay.
+    fn reset(&mut self) {
+        let Board { backplane, frontend, blocks, .. } = self;
+        frontend.fifo.reset(&backplane.fifo);
+        frontend.ring.forget();
+        frontend.processor.reset();
+        blocks.pipeline.power_off();
+        blocks.bitmap.power_off();
+        blocks.scanout.reset();
+        blocks.probe.reset();
+        blocks.account.clear();
+        blocks.powered = Units::empty();
+        backplane.ring.load(Default::default(), false, false);
+        backplane.registers.reset();
+        backplane.counters.lock().clear();
+        backplane.interrupts.set(0, 0);
+        backplane.in_scene.store(false, SeqCst);
+        backplane.control.reset_done();
+    }
+}
+
+/// The firmware's pins wired to the units, while the card's thread holds video memory.
+struct Wiring<'a> {
+    backplane: &'a Backplane,
+    memory: MutexGuard<'a, VideoMemory>,
+    blocks: &'a mut Blocks,
+}
+
+impl Wiring<'_> {
+    fn tick(&mut self) {
+        self.blocks.scanout.tick(self.backplane, &mut self.memory, &mut self.blocks.account);
+    }
+
+    /// After a clear or draw: the probe's records go to memory.
+    fn store_records(&mut self) {
+        let Blocks { probe, account, .. } = &mut *self.blocks;
+        probe.store(&self.backplane.registers, &mut self.memory, account);
+    }
+}
+
+impl Wired for Wiring<'_> {
+    fn backplane(&self) -> &Backplane {
+        self.backplane
+    }
+
+    fn memory(&self) -> &VideoMemory {
+        &self.memory
+    }
+
+    fn publish(&mut self) {
+        self.backplane.publish(&mut self.blocks.account);
+    }
+}
+
+impl Hardware for Wiring<'_> {
+    fn register(&self, register: Reg, word: u32) -> u32 {
+        self.backplane.registers.word(register, word)
+    }
+
+    fn set_register(&mut self, register: Reg, word: u32, value: u32) {
+        self.backplane.registers.put(register, word, value);
+    }
+
+    fn power(&mut self, units: Units) {
+        self.blocks.powered = units;
+    }
+
+    fn begin_scene(&mut self, target: &Target) {
+        self.blocks.probe.begin_scene(target);
+        self.blocks.pipeline.begin_scene(target);
+    }
+
+    fn end_scene(&mut self) -> Result<(), Stopped> {
+        let Blocks { pipeline, bitmap, scanout, account, powered, .. } = &mut *self.blocks;
+        let ended = pipeline.end_scene(self.memory.words_mut(), account);
+        // Begin scene takes all power away. Memory goes back only now, from what the scene did not
+        // call for: a unit that every scene needs keeps its memory from one to the next.
+        if !powered.intersects(PIPELINE) {
+            pipeline.power_off();
+        }
+        if !powered.contains(Units::BITMAP) {
+            bitmap.power_off();
+        }
+        if !powered.contains(Units::SCANOUT) && !self.backplane.cable.is_watched() {
+            scanout.power_off();
+        }
+        ended
+    }
+
+    fn clear(&mut self, clear: &Clear) {
+        let Blocks { pipeline, probe, account, .. } = &mut *self.blocks;
+        probe.clear(&self.backplane.registers, self.memory.words(), clear);
+        pipeline.clear(self.memory.words_mut(), clear, account);
+        self.store_records();
+    }
+
+    fn draw(&mut self, state: &DrawState, draw: &Draw<'_>) -> Result<(), Stopped> {
+        let Backplane { registers, control, .. } = self.backplane;
+        let Blocks { pipeline, probe, account, .. } = &mut *self.blocks;
+        let geometry = GeometryRegisters {
+            object_eye: registers.floats(Reg::ObjectEye),
+            decal: registers.floats(Reg::Decal),
+            eye_clip: registers.floats(Reg::EyeClip),
+            viewport: registers.floats(Reg::Viewport),
+        };
+        let limit = match registers.get(Reg::Watchdog) {
+            0 => u64::MAX,
+            units => u64::from(units) * WATCHDOG_UNIT,
+        };
+        let stop = |spent: Clocks| match (control.stopping(), spent.0 > limit) {
+            (true, _) => Some(Stopped::Reset),
+            (_, true) => Some(Stopped::Watchdog),
+            _ => None,
+        };
+        let watch = probe.watch(registers);
+        let drawn = pipeline.draw(self.memory.words_mut(), &geometry, state, draw, watch, account, &stop);
+        self.store_records();
+        drawn
+    }
+
+    fn largest_index(&mut self, indices: &Words<'_>) -> Option<(u32, u32)> {
+        let words = match *indices {
+            Words::Inline(words) => words,
+            Words::Memory { address, words } => &self.memory.words()[(address / 4) as usize..][..words as usize],
+        };
+        let largest = words.iter().copied().max()?;
+        (0..).zip(words).find(|&(_, &index)| index == largest).map(|(place, _)| (largest, place))
+    }
+
+    fn fill(&mut self, fill: &Fill) {
+        fill::fill(self.memory.words_mut(), fill, &mut self.blocks.account);
+    }
+
+    fn copy(&mut self, copy: &Copy) {
+        self.blocks.bitmap.copy(self.memory.words_mut(), copy, &mut self.blocks.account);
+    }
+
+    fn upload(&mut self, rows: &Rows, words: &[u32]) {
+        transfer::upload(self.memory.words_mut(), rows, words, &mut self.blocks.account);
+    }
+
+    fn download(&mut self, rows: &Rows, destination: u32) {
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        bitmap.download(self.memory.words_mut(), rows, destination, account);
+    }
+
+    fn fence(&mut self, sequence: u32) {
+        self.blocks.account.add(Counter::FrontendFences, 1);
+        self.publish();
+        self.backplane.registers.set(Reg::FenceSequence, sequence);
+        self.backplane.interrupts.raise(INTERRUPT_FENCE);
+    }
+
+    fn present(&mut self, base: u32) {
+        let Blocks { scanout, account, .. } = &mut *self.blocks;
+        scanout.present(self.backplane, &mut self.memory, base, account);
+    }
+
+    fn write_back(&mut self, destination: u32) {
+        let Blocks { scanout, account, .. } = &mut *self.blocks;
+        scanout.write_back(self.backplane, &mut self.memory, destination, account);
+    }
+
+    fn packet_taken(&mut self, words: u32) {
+        charge_packet(words, &mut self.blocks.account);
+    }
+}

@@ -1,0 +1,260 @@
+//! Assembly: vertices become primitives, primitives are clipped and set up.
+//!
+//! What is left of each goes into a [`Sink`], in order: the bins of a hidden-surface path, or a plain
+//! [`List`] for the specification and the probe.
+
+use super::ScreenVertex;
+use super::clip::{Polygon, clip_line};
+use super::fetch::Fetch;
+use super::line::Line;
+use super::plane::{Axis, DepthPlane};
+use super::transform::Transform;
+use super::triangle::Triangle;
+use std::ops::Range;
+use zga_abi::format::{DepthFormat, Topology};
+
+/// A point: its pixel and depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Point {
+    /// Column, row.
+    pub pixel: [i32; 2],
+    /// Depth.
+    pub z: i32,
+}
+
+/// Who takes primitives that are set up. The vertices are those the record was made from; `number` is
+/// that of the primitive in its draw.
+pub trait Sink {
+    /// Takes a triangle; `columns` is its first column and the first beyond.
+    fn triangle(&mut self, triangle: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], number: u32);
+    /// Takes a line.
+    fn line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: u32);
+    /// Takes a point.
+    fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32);
+    /// Wants no more: what it has must be drawn first.
+    fn full(&self) -> bool;
+}
+
+/// Events of the geometry unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GeometryCounts {
+    /// Primitives that arrived.
+    pub primitives: u64,
+    /// Primitives that a clip plane cut.
+    pub clipped: u64,
+    /// Clip planes that cut, over all primitives.
+    pub cuts: u64,
+    /// Primitives dropped.
+    pub discarded: u64,
+}
+
+impl GeometryCounts {
+    /// The sum of two counts.
+    #[must_use]
+    pub fn plus(self, other: GeometryCounts) -> GeometryCounts {
+        GeometryCounts {
+            primitives: self.primitives + other.primitives,
+            clipped: self.clipped + other.clipped,
+            cuts: self.cuts + other.cuts,
+            discarded: self.discarded + other.discarded,
+        }
+    }
+}
+
+/// The assembly stage of one draw.
+pub struct Assembler<'a> {
+    /// Words.
+    pub fetch: Fetch<'a>,
+    /// Matrices.
+    pub transform: &'a Transform,
+    /// Depth format of the target.
+    pub format: DepthFormat,
+    /// How vertices make primitives.
+    pub topology: Topology,
+    /// Vertices of an indexed draw, transformed once each; `None` stands for one to clip.
+    pub shared: Option<&'a [Option<ScreenVertex>]>,
+}
+
+impl Assembler<'_> {
+    /// Assembles primitives `range` of the draw until all are done or `sink` is full; counts what
+    /// happened and returns the first primitive not assembled.
+    pub fn run(&self, range: Range<u32>, sink: &mut impl Sink, counts: &mut GeometryCounts) -> u32 {
+        let begun = range.start;
+        for number in range.clone() {
+            if sink.full() {
+                counts.primitives += u64::from(number - begun);
+                return number;
+            }
+            let n = number as usize;
+            let drawn = match self.topology {
+                Topology::Triangles => self.triangle([3 * n, 3 * n + 1, 3 * n + 2], number, sink, counts),
+                Topology::Lines => self.line([2 * n, 2 * n + 1], number, sink, counts),
+                Topology::LineStrip => self.line([n, n + 1], number, sink, counts),
+                Topology::Points => self.point(n, number, sink),
+            };
+            counts.discarded += u64::from(!drawn);
+        }
+        counts.primitives += u64::from(range.end - begun);
+        range.end
+    }
+
+    #[inline(always)]
+    fn triangle(&self, elements: [usize; 3], number: u32, sink: &mut impl Sink, counts: &mut GeometryCounts) -> bool {
+        let [a, b, c] = elements;
+        let vertices = [self.fetch.vertex_of(a), self.fetch.vertex_of(b), self.fetch.vertex_of(c)];
+        let [a, b, c] = vertices;
+        match (self.screen(a), self.screen(b), self.screen(c)) {
+            (Some(a), Some(b), Some(c)) => self.set_up(&[a, b, c], number, sink),
+            _ => self.clip_triangle(vertices, number, sink, counts),
+        }
+    }
+
+    #[inline(always)]
+    fn set_up(&self, v: &[ScreenVertex; 3], number: u32, sink: &mut impl Sink) -> bool {
+        match Triangle::new(v, self.format) {
+            Some((triangle, columns)) => {
+                sink.triangle(&triangle, columns, v, number);
+                true
+            }
+            None => false,
+        }
+    }
+
+    #[cold]
+    fn clip_triangle(
+        &self,
+        vertices: [usize; 3],
+        number: u32,
+        sink: &mut impl Sink,
+        counts: &mut GeometryCounts,
+    ) -> bool {
+        let raw = vertices.map(|v| self.fetch.vertex(v));
+        let [Some(a), Some(b), Some(c)] = raw.map(|r| self.transform.clip_space(&r)) else {
+            return false;
+        };
+        let polygon = Polygon::triangle(self.transform, &[a, b, c]);
+        let left = polygon.vertices();
+        if polygon.cuts > 0 && !left.is_empty() {
+            counts.clipped += 1;
+            counts.cuts += u64::from(polygon.cuts);
+        }
+        let mut any = false;
+        for pair in left.windows(2).skip(1) {
+            if let [Some(p), Some(q), Some(r)] = [&left[0], &pair[0], &pair[1]].map(|v| self.transform.project(v)) {
+                any |= self.set_up(&[self.provoking(p, raw[0].colour), q, r], number, sink);
+            }
+        }
+        any
+    }
+
+    fn line(&self, elements: [usize; 2], number: u32, sink: &mut impl Sink, counts: &mut GeometryCounts) -> bool {
+        let vertices = [self.fetch.vertex_of(elements[0]), self.fetch.vertex_of(elements[1])];
+        let ends = match (self.screen(vertices[0]), self.screen(vertices[1])) {
+            (Some(a), Some(b)) => Some([a, b]),
+            _ => self.clip_line(vertices, counts),
+        };
+        let set = ends.and_then(|v| Line::new(&v, self.format).map(|line| (v, line)));
+        if let Some((v, line)) = &set {
+            sink.line(line, v, number);
+        }
+        set.is_some()
+    }
+
+    #[cold]
+    fn clip_line(&self, vertices: [usize; 2], counts: &mut GeometryCounts) -> Option<[ScreenVertex; 2]> {
+        let raw = vertices.map(|v| self.fetch.vertex(v));
+        let [Some(a), Some(b)] = raw.map(|r| self.transform.clip_space(&r)) else {
+            return None;
+        };
+        let (left, cuts) = clip_line(self.transform, &[a, b]);
+        let [a, b] = left?;
+        counts.clipped += u64::from(cuts > 0);
+        counts.cuts += u64::from(cuts);
+        let (a, b) = (self.transform.project(&a)?, self.transform.project(&b)?);
+        Some([self.provoking(a, raw[0].colour), b])
+    }
+
+    /// A point is inside or it is not: there is nothing to cut.
+    fn point(&self, element: usize, number: u32, sink: &mut impl Sink) -> bool {
+        let vertex = self.screen(self.fetch.vertex_of(element));
+        if let Some(v) = &vertex {
+            sink.point(&Point { pixel: [v.x >> 8, v.y >> 8], z: v.z as i32 }, v, number);
+        }
+        vertex.is_some()
+    }
+
+    /// Clipping mixes colours; the first vertex of a flat draw's piece keeps its own.
+    fn provoking(&self, vertex: ScreenVertex, colour: u32) -> ScreenVertex {
+        if self.transform.flat_colour() { ScreenVertex { colour, ..vertex } } else { vertex }
+    }
+
+    #[inline(always)]
+    fn screen(&self, vertex: usize) -> Option<ScreenVertex> {
+        match self.shared {
+            Some(shared) => shared[vertex],
+            None => self.transform.inside(&self.fetch.vertex(vertex)),
+        }
+    }
+}
+
+/// A primitive that is set up.
+#[derive(Clone, Copy, Debug)]
+pub enum Shape {
+    /// A triangle and its snapped vertices.
+    Triangle(Triangle, [ScreenVertex; 3]),
+    /// A line and its snapped ends.
+    Line(Line, [ScreenVertex; 2]),
+    /// A point and its snapped vertex.
+    Point(Point, ScreenVertex),
+}
+
+impl Shape {
+    /// Depth plane.
+    #[must_use]
+    pub fn plane(&self, format: DepthFormat) -> DepthPlane {
+        match self {
+            Shape::Triangle(triangle, _) => triangle.plane,
+            Shape::Line(line, _) => line.plane,
+            Shape::Point(_, v) => DepthPlane::flat(v, format),
+        }
+    }
+
+    /// Whether a line or point draws pixel (`x`, `y`), by its record. A triangle's record says nothing
+    /// about single pixels: ask its edge functions.
+    #[must_use]
+    pub fn line_or_point_draws(&self, x: i32, y: i32) -> bool {
+        match self {
+            Shape::Triangle(..) => false,
+            Shape::Line(line, _) => {
+                let (step, minor) = if line.axis == Axis::X { (x, y) } else { (y, x) };
+                (line.steps[0]..line.steps[1]).contains(&step) && line.minor_at(step) == minor
+            }
+            Shape::Point(point, _) => point.pixel == [x, y],
+        }
+    }
+}
+
+/// Primitives in order, each with its number in the draw.
+#[derive(Debug, Default)]
+pub struct List {
+    /// The primitives.
+    pub shapes: Vec<(Shape, u32)>,
+}
+
+/// Most primitives of a [`List`] before it wants to be drawn.
+const LIST_LIMIT: usize = 1 << 16;
+
+impl Sink for List {
+    fn triangle(&mut self, triangle: &Triangle, _columns: [i32; 2], vertices: &[ScreenVertex; 3], number: u32) {
+        self.shapes.push((Shape::Triangle(*triangle, *vertices), number));
+    }
+    fn line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: u32) {
+        self.shapes.push((Shape::Line(*line, *vertices), number));
+    }
+    fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32) {
+        self.shapes.push((Shape::Point(*point, *vertex), number));
+    }
+    fn full(&self) -> bool {
+        self.shapes.len() >= LIST_LIMIT
+    }
+}

@@ -1,0 +1,187 @@
+//! Transform: object -> eye -> [decal] -> clip -> screen, and the snap to the sub-pixel grid.
+//!
+//! The product of the matrices is formed once a draw in f64 and applied in f64 (separate
+//! multiplications and additions, so every machine gives the same bits). Where a decal is called,
+//! x, y and w come from the undisplaced vertex and only z / w from the displaced one: a marking's
+//! pixels are the same with and without the offset.
+
+use super::fetch::RawVertex;
+use super::{GUARD_BAND, GeometryRegisters, PIXEL, ScreenVertex};
+use zga_abi::Effects;
+use zga_abi::format::DepthFormat;
+
+/// A 4x4 matrix for row vectors, row-major.
+type Matrix = [[f64; 4]; 4];
+
+/// A vertex in clip space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClipVertex {
+    /// x, y, z, w of the undisplaced vertex.
+    pub position: [f64; 4],
+    /// z, w of the vertex whose depth is stored: displaced where a decal is called.
+    pub depth: [f64; 2],
+    /// RGBA, R in 7:0; as numbers, since clipping mixes them.
+    pub colour: [f64; 4],
+}
+
+/// The geometry unit's state for one draw.
+#[derive(Clone, Debug)]
+pub struct Transform {
+    clip: Matrix,
+    depth: Option<Matrix>,
+    scale: [f64; 3],
+    offset: [f64; 3],
+    centre: [f64; 2],
+    depth_steps: f64,
+    grid: f64,
+    identity: bool,
+    flat: bool,
+}
+
+/// Adding and subtracting 1.5 * 2^52 rounds an f64 of magnitude below 2^51 to an integer, ties to even.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+impl Transform {
+    /// Forms the products for a draw to a target of `size` pixels.
+    #[must_use]
+    pub fn new(
+        registers: &GeometryRegisters,
+        effects: Effects,
+        size: [u32; 2],
+        format: DepthFormat,
+        subpixel_bits: u32,
+    ) -> Transform {
+        let (object_eye, eye_clip) = (matrix(&registers.object_eye), matrix(&registers.eye_clip));
+        let clip = multiply(&object_eye, &eye_clip);
+        let depth = effects
+            .contains(Effects::DECAL)
+            .then(|| multiply(&multiply(&object_eye, &matrix(&registers.decal)), &eye_clip));
+        let [sx, sy, sz, ox, oy, oz] = registers.viewport.map(f64::from);
+        let unit = [sx, sy, sz, ox, oy, oz] == [1.0, 1.0, 1.0, 0.0, 0.0, 0.0];
+        Transform {
+            clip,
+            depth,
+            scale: [sx, sy, sz],
+            offset: [ox, oy, oz],
+            centre: size.map(|s| f64::from(s) / 2.0),
+            depth_steps: f64::from(format.maximum()),
+            grid: f64::from(1_u32 << subpixel_bits),
+            flat: !effects.contains(Effects::GOURAUD),
+            identity: unit
+                && depth.is_none()
+                && clip == matrix(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]),
+        }
+    }
+
+    /// The vertex on the screen, or `None` if a clip plane (or a NaN) has to be looked at.
+    #[must_use]
+    #[inline(always)]
+    pub fn inside(&self, raw: &RawVertex) -> Option<ScreenVertex> {
+        let [x, y, z] = raw.position;
+        let (x, y, z) = (f64::from(x), f64::from(y), f64::from(z));
+        let (screen, reciprocal_w, depth) = if self.identity {
+            ([x, y], 1.0, z)
+        } else {
+            let p = apply(&self.clip, x, y, z);
+            let reciprocal_w = 1.0 / p[3];
+            if !(p[3] > 0.0 && p[2] >= 0.0 && p[2] <= p[3]) {
+                return None;
+            }
+            let depth = match &self.depth {
+                None => p[2] * reciprocal_w * self.scale[2] + self.offset[2],
+                Some(matrix) => {
+                    let d = apply(matrix, x, y, z);
+                    (d[2] / d[3]).clamp(0.0, 1.0) * self.scale[2] + self.offset[2]
+                }
+            };
+            let at = |k: usize| p[k] * reciprocal_w * self.scale[k] + self.offset[k];
+            ([at(0), at(1)], reciprocal_w, depth)
+        };
+        // A NaN fails every comparison.
+        let in_band =
+            (screen[0] - self.centre[0]).abs() <= GUARD_BAND && (screen[1] - self.centre[1]).abs() <= GUARD_BAND;
+        let in_depth = !self.identity || (0.0..=1.0).contains(&depth);
+        (in_band && in_depth && !depth.is_nan()).then(|| self.snap(screen, depth, raw.colour, reciprocal_w))
+    }
+
+    /// The vertex in clip space, for the clip stage; `None` if it holds a NaN.
+    #[must_use]
+    pub fn clip_space(&self, raw: &RawVertex) -> Option<ClipVertex> {
+        let [x, y, z] = raw.position.map(f64::from);
+        let position = apply(&self.clip, x, y, z);
+        let depth = match &self.depth {
+            None => [position[2], position[3]],
+            Some(matrix) => {
+                let d = apply(matrix, x, y, z);
+                [d[2], d[3]]
+            }
+        };
+        let colour = raw.colour.to_le_bytes().map(f64::from);
+        let finite = position.iter().chain(&depth).all(|c| c.is_finite());
+        finite.then_some(ClipVertex { position, depth, colour })
+    }
+
+    /// Signed distances (times w, up to a factor) to the clip planes; negative is outside. Near, far,
+    /// then left, right, top, bottom of the guard band.
+    #[must_use]
+    pub fn distances(&self, v: &ClipVertex) -> [f64; 6] {
+        let [x, y, z, w] = v.position;
+        let [px, py] = [x * self.scale[0] + w * self.offset[0], y * self.scale[1] + w * self.offset[1]];
+        let [cx, cy] = self.centre;
+        [
+            z,
+            w - z,
+            px - w * (cx - GUARD_BAND),
+            w * (cx + GUARD_BAND) - px,
+            py - w * (cy - GUARD_BAND),
+            w * (cy + GUARD_BAND) - py,
+        ]
+    }
+
+    /// A clipped vertex on the screen; `None` where w is 0, which only a point without extent has.
+    #[must_use]
+    pub fn project(&self, v: &ClipVertex) -> Option<ScreenVertex> {
+        let [x, y, _, w] = v.position;
+        let reciprocal_w = 1.0 / w;
+        // Rounding in the clip can leave a vertex a trifle outside; the grid is clamped like depth.
+        let screen = [0, 1].map(|k| {
+            let at = [x, y][k] * reciprocal_w * self.scale[k] + self.offset[k];
+            at.clamp(self.centre[k] - GUARD_BAND, self.centre[k] + GUARD_BAND)
+        });
+        let depth = (v.depth[0] / v.depth[1]).clamp(0.0, 1.0) * self.scale[2] + self.offset[2];
+        let colour = u32::from_le_bytes(v.colour.map(|c| (c + 0.5) as u8));
+        (w > 0.0 && ![screen[0], screen[1], depth].iter().any(|c| c.is_nan()))
+            .then(|| self.snap(screen, depth, colour, reciprocal_w))
+    }
+
+    /// The draw takes the first vertex's colour.
+    #[must_use]
+    pub fn flat_colour(&self) -> bool {
+        self.flat
+    }
+
+    #[inline(always)]
+    fn snap(&self, screen: [f64; 2], depth: f64, colour: u32, reciprocal_w: f64) -> ScreenVertex {
+        // The scale of the register's grid back to u is a power of two and exact.
+        let to_u = f64::from(PIXEL) / self.grid;
+        let grid = |c: f64| (((c * self.grid + ROUND) - ROUND) * to_u) as i32;
+        let (x, y) = (grid(screen[0]), grid(screen[1]));
+        let z = (depth.clamp(0.0, 1.0) * self.depth_steps + 0.5) as u32;
+        ScreenVertex { x, y, z, colour, reciprocal_w: reciprocal_w as f32 }
+    }
+}
+
+fn matrix(m: &[f32; 16]) -> Matrix {
+    [0, 1, 2, 3].map(|r| [0, 1, 2, 3].map(|c| f64::from(m[4 * r + c])))
+}
+
+/// a * b for row vectors: first a, then b.
+fn multiply(a: &Matrix, b: &Matrix) -> Matrix {
+    a.map(|row| [0, 1, 2, 3].map(|c| row[0] * b[0][c] + row[1] * b[1][c] + row[2] * b[2][c] + row[3] * b[3][c]))
+}
+
+#[inline(always)]
+fn apply(m: &Matrix, x: f64, y: f64, z: f64) -> [f64; 4] {
+    let column = |c: usize| x * m[0][c] + y * m[1][c] + z * m[2][c] + m[3][c];
+    [column(0), column(1), column(2), column(3)]
+}

@@ -1,0 +1,186 @@
+//! Bins: for each host tile the primitives that can touch it, in order.
+//!
+//! A bin holds the primitives themselves, not references to them: a tile then reads its own memory
+//! from front to back, where references would miss the cache on every primitive of a large scene.
+//! A primitive goes into the tiles that the rows (or steps) of each tile row (or column) can reach,
+//! not into those of its bounding box: a long sliver touches a handful of tiles.
+
+use super::tile::TILE;
+use crate::geometry::ScreenVertex;
+use crate::geometry::assembly::{Point, Sink};
+use crate::geometry::line::Line;
+use crate::geometry::plane::Axis;
+use crate::geometry::triangle::Triangle;
+use crate::shading::plane::ColourSource;
+use zga_firmware::checked::Rectangle;
+
+/// log2 of the tile size.
+const SHIFT: u32 = TILE.trailing_zeros();
+
+/// Bytes in all bins after which they want to be drawn.
+const LIMIT: usize = 64 << 20;
+
+/// A primitive, and what its colours are made from once it is seen.
+pub type Entry<T> = (T, ColourSource);
+
+/// Primitives of one tile; a draw has one kind of them only.
+#[derive(Debug, Default)]
+pub struct Bin {
+    /// Triangles.
+    pub triangles: Vec<Entry<Triangle>>,
+    /// Lines.
+    pub lines: Vec<Entry<Line>>,
+    /// Points.
+    pub points: Vec<Entry<Point>>,
+}
+
+impl Bin {
+    /// Number of primitives.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.triangles.len() + self.lines.len() + self.points.len()
+    }
+
+    /// Nothing touches the tile.
+    #[must_use]
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty() && self.lines.is_empty() && self.points.is_empty()
+    }
+
+    /// What the colours of primitive `index` are made from.
+    #[must_use]
+    pub fn colours(&self, index: usize) -> Option<&ColourSource> {
+        let triangle = self.triangles.get(index).map(|(_, colours)| colours);
+        let line = || self.lines.get(index).map(|(_, colours)| colours);
+        triangle.or_else(line).or_else(|| self.points.get(index).map(|(_, colours)| colours))
+    }
+
+    fn clear(&mut self) {
+        self.triangles.clear();
+        self.lines.clear();
+        self.points.clear();
+    }
+}
+
+/// The bins of one share of a draw.
+#[derive(Debug, Default)]
+pub struct Bins {
+    tiles: Vec<Bin>,
+    touched: Vec<u32>,
+    columns: usize,
+    area: [i32; 4],
+    bytes: usize,
+}
+
+impl Bins {
+    /// Empties the bins for a target of `width` x `height` pixels of which `scissor` may change.
+    pub fn reset(&mut self, width: u32, height: u32, scissor: Rectangle) {
+        for tile in self.touched.drain(..) {
+            self.tiles[tile as usize].clear();
+        }
+        self.columns = (width as usize).div_ceil(TILE);
+        let count = self.columns * (height as usize).div_ceil(TILE);
+        if self.tiles.len() != count {
+            self.tiles.resize_with(count, Bin::default);
+        }
+        self.area = [scissor.x, scissor.y, scissor.right, scissor.bottom].map(|c| c as i32);
+        self.bytes = 0;
+    }
+
+    /// Primitives that can touch tile (`column`, `row`).
+    #[must_use]
+    #[inline(always)]
+    pub fn tile(&self, column: usize, row: usize) -> &Bin {
+        &self.tiles[row * self.columns + column]
+    }
+
+    /// Tile rows that hold something: first, first beyond; `None` if none does.
+    #[must_use]
+    pub fn rows(&self) -> Option<[usize; 2]> {
+        let row = |tile: &u32| *tile as usize / self.columns;
+        Some([self.touched.iter().map(row).min()?, self.touched.iter().map(row).max()? + 1])
+    }
+
+    #[inline(always)]
+    fn bin<T>(&mut self, column: i32, row: i32, entries: fn(&mut Bin) -> &mut Vec<Entry<T>>) -> &mut Vec<Entry<T>> {
+        let tile = row as usize * self.columns + column as usize;
+        let entries = entries(&mut self.tiles[tile]);
+        if entries.is_empty() {
+            self.touched.push(tile as u32);
+        }
+        self.bytes += size_of::<Entry<T>>();
+        entries
+    }
+}
+
+impl Sink for Bins {
+    #[inline(always)]
+    fn triangle(&mut self, t: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], _number: u32) {
+        let area = self.area;
+        let (left, right) = (columns[0].max(area[0]), columns[1].min(area[2]));
+        let (top, bottom) = (t.rows[0].max(area[1]), t.rows[2].min(area[3]));
+        if left >= right || top >= bottom {
+            return;
+        }
+        let colours = ColourSource::new(vertices);
+        let (columns, rows) = ([left >> SHIFT, (right - 1) >> SHIFT], [top >> SHIFT, (bottom - 1) >> SHIFT]);
+        if columns[0] == columns[1] {
+            for row in rows[0]..=rows[1] {
+                self.bin(columns[0], row, |bin| &mut bin.triangles).push((*t, colours));
+            }
+            return;
+        }
+        for row in rows[0]..=rows[1] {
+            let (first, last) = (top.max(row << SHIFT), (bottom - 1).min((row << SHIFT) + TILE as i32 - 1));
+            // Each side is straight between the ends of the rows and the middle vertex.
+            let ([l0, r0], [l1, r1]) = (t.span(first), t.span(last));
+            let (mut from, mut to) = (l0.min(l1), r0.max(r1));
+            if first < t.rows[1] && t.rows[1] <= last {
+                let ([l2, r2], [l3, r3]) = (t.span(t.rows[1] - 1), t.span(t.rows[1]));
+                (from, to) = (from.min(l2).min(l3), to.max(r2).max(r3));
+            }
+            let (from, to) = (from.max(left), to.min(right));
+            if from < to {
+                for column in from >> SHIFT..=(to - 1) >> SHIFT {
+                    self.bin(column, row, |bin| &mut bin.triangles).push((*t, colours));
+                }
+            }
+        }
+    }
+
+    fn line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], _number: u32) {
+        let area = self.area;
+        let x_major = line.axis == Axis::X;
+        let (along, across) =
+            if x_major { ([area[0], area[2]], [area[1], area[3]]) } else { ([area[1], area[3]], [area[0], area[2]]) };
+        let (first, beyond) = (line.steps[0].max(along[0]), line.steps[1].min(along[1]));
+        if first >= beyond {
+            return;
+        }
+        let colours = ColourSource::new(&[vertices[0], vertices[1], vertices[1]]);
+        for major in first >> SHIFT..=(beyond - 1) >> SHIFT {
+            let from = line.minor_at(first.max(major << SHIFT));
+            let to = line.minor_at((beyond - 1).min((major << SHIFT) + TILE as i32 - 1));
+            let (from, to) = (from.min(to).max(across[0]), from.max(to).min(across[1] - 1));
+            if from <= to {
+                for minor in from >> SHIFT..=to >> SHIFT {
+                    let (column, row) = if x_major { (major, minor) } else { (minor, major) };
+                    self.bin(column, row, |bin| &mut bin.lines).push((*line, colours));
+                }
+            }
+        }
+    }
+
+    fn point(&mut self, point: &Point, vertex: &ScreenVertex, _number: u32) {
+        let ([x, y], area) = (point.pixel, self.area);
+        if (area[0]..area[2]).contains(&x) && (area[1]..area[3]).contains(&y) {
+            let colours = ColourSource::new(&[*vertex; 3]);
+            self.bin(x >> SHIFT, y >> SHIFT, |bin| &mut bin.points).push((*point, colours));
+        }
+    }
+
+    fn full(&self) -> bool {
+        self.bytes >= LIMIT
+    }
+}

@@ -1,0 +1,136 @@
+//! The specification of the Z buffer path: pixel by pixel, everything switched by state.
+//!
+//! Simple and slow on purpose. A triangle is its edge functions and the top-left rule, a fragment is
+//! compared, written and coloured at once, in order of submission. Every fast path must give the
+//! same frame buffer, Z buffer and counts, bit for bit.
+
+use super::DepthTest;
+use super::band::Setting;
+use super::tile::TileCounts;
+use crate::geometry::ScreenVertex;
+use crate::geometry::assembly::Shape;
+use crate::geometry::plane::below;
+use crate::geometry::triangle::doubled_area;
+use crate::shading::plane::{ColourPlane, ColourSource, Interpolation};
+use crate::shading::resolve::{PixelRow, Row16, Row32};
+use zga_abi::format::PixelFormat;
+
+/// Draws primitives on whole surfaces, one after another.
+#[must_use]
+pub fn draw<'s>(
+    setting: &Setting,
+    shapes: impl Iterator<Item = &'s Shape>,
+    colour: &mut [u32],
+    depth: &mut [i32],
+) -> TileCounts {
+    let mut counts = TileCounts::default();
+    for shape in shapes {
+        primitive(setting, shape, colour, depth, &mut counts);
+    }
+    counts
+}
+
+/// The colour plane of a primitive.
+#[must_use]
+pub fn colour_plane(shape: &Shape, interpolation: Interpolation) -> ColourPlane {
+    match shape {
+        Shape::Triangle(_, v) => ColourPlane::triangle(&ColourSource::new(v), interpolation),
+        Shape::Line(_, v) => ColourPlane::line(&ColourSource::new(&[v[0], v[1], v[1]]), interpolation),
+        Shape::Point(_, v) => ColourPlane::Flat(v.colour),
+    }
+}
+
+/// Whether a primitive covers (or draws) pixel (`x`, `y`).
+#[must_use]
+pub fn meets(shape: &Shape, x: i32, y: i32) -> bool {
+    match shape {
+        Shape::Triangle(_, v) => covers(v, x, y),
+        Shape::Line(..) | Shape::Point(..) => shape.line_or_point_draws(x, y),
+    }
+}
+
+fn primitive(setting: &Setting, shape: &Shape, colour: &mut [u32], depth: &mut [i32], counts: &mut TileCounts) {
+    let plane = shape.plane(setting.format);
+    let colours = colour_plane(shape, setting.interpolation);
+    let below = below(setting.format);
+    let (rows, columns) = extent(shape, setting);
+    for y in rows.0..rows.1 {
+        let mut any = false;
+        for x in columns.0..columns.1 {
+            if !meets(shape, x, y) {
+                continue;
+            }
+            any = true;
+            counts.covered += 1;
+            let (column, row) = (x as usize, y as usize);
+            if let Some(test) = setting.test {
+                let z = plane.stored(plane.value(x, y), below);
+                let stored = &mut depth[row * setting.depth_pitch + column];
+                if !test.passes(z, *stored) {
+                    continue;
+                }
+                if test.write {
+                    *stored = z;
+                }
+            }
+            counts.passed += 1;
+            put(
+                setting,
+                &mut colour[row * setting.colour_pitch..][..setting.colour_pitch],
+                column,
+                colours.colour(x, y),
+            );
+        }
+        counts.spans += u64::from(any && matches!(shape, Shape::Triangle(..)));
+    }
+}
+
+/// Rows and columns that a primitive can touch inside the scissor, with a pixel to spare.
+fn extent(shape: &Shape, setting: &Setting) -> ((i32, i32), (i32, i32)) {
+    let vertices: &[ScreenVertex] = match shape {
+        Shape::Triangle(_, v) => v,
+        Shape::Line(_, v) => v,
+        Shape::Point(_, v) => std::slice::from_ref(v),
+    };
+    let range = |coordinate: fn(&ScreenVertex) -> i32, low: u32, high: u32| {
+        let pixels = || vertices.iter().map(|v| coordinate(v) >> 8);
+        let (least, greatest) = (pixels().min().unwrap_or(0), pixels().max().unwrap_or(0));
+        ((least - 1).max(low as i32), (greatest + 2).min(high as i32))
+    };
+    let area = setting.scissor;
+    (range(|v| v.y, area.y, area.bottom), range(|v| v.x, area.x, area.right))
+}
+
+fn put(setting: &Setting, row: &mut [u32], x: usize, colour: u32) {
+    match setting.pixel_format {
+        PixelFormat::Xrgb8888 => Row32 { words: row, opaque: 0xFF00_0000 }.put(x, colour),
+        PixelFormat::Argb8888 => Row32 { words: row, opaque: 0 }.put(x, colour),
+        PixelFormat::Rgb565 => Row16 { pixels: bytemuck::cast_slice_mut(row) }.put(x, colour),
+    }
+}
+
+/// Whether the centre of pixel (`x`, `y`) lies in the triangle, by edge functions and the top-left rule.
+#[must_use]
+pub fn covers(v: &[ScreenVertex; 3], x: i32, y: i32) -> bool {
+    let (px, py) = (i64::from(x) * 256 + 128, i64::from(y) * 256 + 128);
+    let area = doubled_area(&v[0], &v[1], &v[2]);
+    let order = if area > 0 { [0, 1, 2] } else { [0, 2, 1] };
+    area != 0
+        && (0..3).all(|k| {
+            let (a, b) = (&v[order[k]], &v[order[(k + 1) % 3]]);
+            let (dx, dy) = (i64::from(b.x) - i64::from(a.x), i64::from(b.y) - i64::from(a.y));
+            let e = dx * (py - i64::from(a.y)) - dy * (px - i64::from(a.x));
+            // An edge that is neither left (going up) nor top (going right) does not own its points.
+            let owner = dy < 0 || (dy == 0 && dx > 0);
+            e - i64::from(!owner) >= 0
+        })
+}
+
+impl DepthTest {
+    /// Whether depth `z` passes against `stored`.
+    #[must_use]
+    #[inline(always)]
+    pub fn passes(self, z: i32, stored: i32) -> bool {
+        (self.less && z < stored) || (self.equal && z == stored) || (self.greater && z > stored)
+    }
+}

@@ -1,0 +1,118 @@
+//! Memory: video memory and Za RAM behind their windows.
+//!
+//! Duties: bounds of the memories, bursts, a note of what changed for scan-out.
+//! Inputs: bursts of the host; the units, which work on the words directly.
+//! Outputs: words; [`VideoMemory::generation`].
+//! Clocks: none of its own; each unit charges its accesses. The interface is [`LINE_BYTES`] wide.
+//!
+//! Words are 32 bits; the first of two 16-bit pixels stands in a word's low half.
+
+mod za_ram;
+
+pub(crate) use za_ram::ZaRam;
+
+use std::ops::Range;
+
+/// Bytes that video memory moves in one clock: one line, at an address that is a multiple of it.
+pub(crate) const LINE_BYTES: u64 = 64;
+
+/// Video memory.
+#[derive(Debug)]
+pub(crate) struct VideoMemory {
+    words: Vec<u32>,
+    /// Counts changes that can be seen in the frame shown.
+    generation: u64,
+    /// Words of the frame shown; host writes elsewhere cannot be seen.
+    watched: Range<usize>,
+}
+
+impl VideoMemory {
+    /// `bytes` bytes of zeros. The host's pages come when they are first touched.
+    pub(crate) fn new(bytes: u32) -> VideoMemory {
+        VideoMemory { words: vec![0; (bytes / 4) as usize], generation: 0, watched: 0..0 }
+    }
+
+    /// All words.
+    pub(crate) fn words(&self) -> &[u32] {
+        &self.words
+    }
+
+    /// All words, to change some of them.
+    pub(crate) fn words_mut(&mut self) -> &mut [u32] {
+        self.generation += 1;
+        &mut self.words
+    }
+
+    /// Reads from word `index` on; returns how many words there are, the rest stay as they are.
+    pub(crate) fn read(&self, index: usize, words: &mut [u32]) -> usize {
+        let stored = self.words.get(index..).unwrap_or_default();
+        let count = stored.len().min(words.len());
+        words[..count].copy_from_slice(&stored[..count]);
+        count
+    }
+
+    /// Writes from word `index` on; returns how many words there are, the rest go nowhere.
+    pub(crate) fn write(&mut self, index: usize, words: &[u32]) -> usize {
+        let stored = self.words.get_mut(index..).unwrap_or_default();
+        let count = stored.len().min(words.len());
+        stored[..count].copy_from_slice(&words[..count]);
+        if index < self.watched.end && index + count > self.watched.start {
+            self.generation += 1;
+        }
+        count
+    }
+
+    /// Changes with every change that can be seen in the frame shown.
+    pub(crate) fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// The frame shown lies in these words.
+    pub(crate) fn watch(&mut self, words: Range<usize>) {
+        self.watched = words;
+    }
+}
+
+/// Lines that `bytes` bytes from byte `address` on lie in.
+pub(crate) fn lines(address: u64, bytes: u64) -> u64 {
+    if bytes == 0 {
+        return 0;
+    }
+    (address + bytes - 1) / LINE_BYTES - address / LINE_BYTES + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_counts_each_line_touched() {
+        assert_eq!(lines(0, 0), 0);
+        assert_eq!(lines(0, 64), 1);
+        assert_eq!(lines(60, 4), 1);
+        assert_eq!(lines(60, 8), 2);
+        assert_eq!(lines(63, 66), 3);
+    }
+
+    #[test]
+    fn write_outside_the_frame_shown_is_no_change() {
+        let mut memory = VideoMemory::new(4096);
+        memory.watch(16..32);
+        memory.write(0, &[1; 16]);
+        memory.write(32, &[1; 16]);
+        assert_eq!(memory.generation(), 0);
+        memory.write(15, &[1, 1]);
+        memory.write(31, &[1]);
+        assert_eq!(memory.generation(), 2);
+    }
+
+    #[test]
+    fn read_beyond_the_end_says_how_far_it_came() {
+        let mut memory = VideoMemory::new(4096);
+        assert_eq!(memory.write(1022, &[5; 8]), 2);
+        let mut words = [9; 4];
+        assert_eq!(memory.read(1023, &mut words), 1);
+        assert_eq!(words, [5, 9, 9, 9]);
+        assert_eq!(memory.read(5000, &mut words), 0);
+    }
+}

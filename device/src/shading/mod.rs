@@ -1,0 +1,13 @@
+//! Shading: the colour of what is seen. Runs once for each visible pixel, after visibility.
+//!
+//! | file | part |
+//! | --- | --- |
+//! | [`plane`] | colour interpolators: flat, affine (integer), perspective-correct (f32) |
+//! | [`resolve`] | runs of visible pixels become frame buffer pixels |
+//!
+//! Clocks: 1 for each interpolated pixel (four interpolators side by side); flat colours cost none.
+//! The clocks are those of a card that shades each fragment that passes: 1 for each `colour.writes`
+//! of a Gouraud draw. That the host shades only what stays visible shows in host time alone.
+
+pub mod plane;
+pub mod resolve;
