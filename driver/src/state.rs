@@ -1,0 +1,264 @@
+//! Draw state: what the next draw uses. Only what differs from the card's registers is sent, at the draw.
+
+use glam::DMat4;
+use zga_abi::Effects;
+use zga_abi::bus::Bus;
+use zga_abi::format::{DepthFunction, HiddenSurface};
+use zga_abi::registers::Reg;
+
+use crate::view::{Camera, Decal, Matrix, camera, finite};
+use crate::{DecalInfo, Driver, DriverError, Target, Warning};
+
+/// The whole target.
+const NO_SCISSOR: [u32; 2] = [0, 0x7FFF_7FFF];
+/// Bit 8 of DEPTH_CONTROL: a passing fragment's depth is stored.
+const DEPTH_WRITE: u32 = 1 << 8;
+
+/// A rectangle of pixels: `x`, `y` inclusive, `right`, `bottom` exclusive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rectangle {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// First column beyond.
+    pub right: u32,
+    /// First row beyond.
+    pub bottom: u32,
+}
+
+/// What the user has set.
+#[derive(Debug)]
+pub(crate) struct State {
+    pub camera: Camera,
+    pub object: DMat4,
+    pub decal: Option<f64>,
+    pub depth_function: DepthFunction,
+    pub depth_write: bool,
+    pub hidden_surface: HiddenSurface,
+    pub subpixel_bits: u32,
+    pub scissor: [u32; 2],
+    pub material: u32,
+    pub tag: u32,
+    /// Target size that the matrices were composed for.
+    pub composed_for: (u32, u32),
+    /// Camera, object, decal or target size changed since the matrices were composed.
+    matrices_due: bool,
+}
+
+impl State {
+    pub fn new() -> State {
+        State {
+            camera: Camera::Screen,
+            object: DMat4::IDENTITY,
+            decal: None,
+            depth_function: DepthFunction::Less,
+            depth_write: true,
+            hidden_surface: HiddenSurface::ZBuffer,
+            subpixel_bits: 8,
+            scissor: NO_SCISSOR,
+            material: u32::MAX,
+            tag: 0,
+            composed_for: (0, 0),
+            matrices_due: true,
+        }
+    }
+
+    /// The matrices must be composed again.
+    pub const fn matrices_changed(&mut self) {
+        self.matrices_due = true;
+    }
+}
+
+impl<B: Bus> Driver<B> {
+    /// Sets the camera for the draws that follow.
+    ///
+    /// # Errors
+    /// [`crate::ViewError`]: names the number that has no meaning. The camera stays as it was.
+    pub fn set_camera(&mut self, camera: Camera) -> Result<(), DriverError> {
+        camera.check()?;
+        self.state.camera = camera;
+        self.state.matrices_changed();
+        Ok(())
+    }
+
+    /// The camera.
+    #[must_use]
+    pub const fn camera(&self) -> &Camera {
+        &self.state.camera
+    }
+
+    /// Sets the transform from object to world space for the draws that follow: row-major, for row vectors.
+    ///
+    /// # Errors
+    /// [`crate::ViewError::BadNumber`] if an entry is not finite. The transform stays as it was.
+    pub fn set_object_transform(&mut self, matrix: &Matrix) -> Result<(), DriverError> {
+        for &entry in matrix {
+            finite("object transform", entry.into())?;
+        }
+        self.state.object = camera::wide(matrix);
+        self.state.matrices_changed();
+        Ok(())
+    }
+
+    /// Sets the comparison of a fragment's depth with the stored one; "less" after opening.
+    ///
+    /// With "always" and depth write off the effect `depth` is not called.
+    pub const fn set_depth_function(&mut self, function: DepthFunction) {
+        self.state.depth_function = function;
+    }
+
+    /// Whether a passing fragment's depth is stored; true after opening.
+    pub const fn set_depth_write(&mut self, write: bool) {
+        self.state.depth_write = write;
+    }
+
+    /// Sets who decides visibility, from the next begin scene on; the plain Z buffer after opening.
+    ///
+    /// # Errors
+    /// [`DriverError::Unsupported`] if the card has not this path.
+    pub fn set_hidden_surface(&mut self, path: HiddenSurface) -> Result<(), DriverError> {
+        if !self.info.has_path(path) {
+            return Err(DriverError::Unsupported {
+                what: path.name(),
+                register: "CAPABILITY_PATHS",
+                found: self.info.paths,
+            });
+        }
+        self.state.hidden_surface = path;
+        Ok(())
+    }
+
+    /// Sets the bits of a pixel that coordinates are snapped to, 4 or 8, from the next begin scene on; 8
+    /// after opening.
+    ///
+    /// # Errors
+    /// [`DriverError::BadOption`] for other numbers.
+    pub fn set_subpixel_bits(&mut self, bits: u32) -> Result<(), DriverError> {
+        if bits != 4 && bits != 8 {
+            let found = bits.to_string();
+            return Err(DriverError::BadOption { name: "subpixel bits", found, expected: "4 or 8" });
+        }
+        self.state.subpixel_bits = bits;
+        Ok(())
+    }
+
+    /// Pixels that clears and draws may change; `None` for the whole target. What lies outside the target
+    /// is cut off; an empty rectangle protects everything.
+    pub fn set_scissor(&mut self, scissor: Option<Rectangle>) {
+        let corner = |x: u32, y: u32| x.min(0x7FFF) | y.min(0x7FFF) << 16;
+        self.state.scissor = scissor.map_or(NO_SCISSOR, |r| [corner(r.x, r.y), corner(r.right, r.bottom)]);
+    }
+
+    /// Sets the RGBA colour of what is drawn from positions without colours; white after opening.
+    pub const fn set_material_colour(&mut self, colour: [u8; 4]) {
+        self.state.material = u32::from_le_bytes(colour);
+    }
+
+    /// Sets the number that the probe shows for the draws that follow; 0 after opening.
+    pub const fn set_tag(&mut self, tag: u32) {
+        self.state.tag = tag;
+    }
+
+    /// Draws surface markings: what `draw` draws is moved toward the viewer, far enough for surfaces up to
+    /// `slope` (|dz/dx|, |dz/dy| in eye space; 8 serves well). Only depth is moved; see [`Decal`] for the
+    /// matrix. Negative slopes move away. An inner decal replaces the outer one.
+    ///
+    /// # Errors
+    /// [`crate::ViewError::BadNumber`] if the slope is not finite, [`crate::ViewError::SlopeTooLarge`] if
+    /// S/2K is 1 or more in perspective (inside a scene; outside, the first draw tells); else those of `draw`.
+    pub fn decal<T>(
+        &mut self,
+        slope: f64,
+        draw: impl FnOnce(&mut Driver<B>) -> Result<T, DriverError>,
+    ) -> Result<T, DriverError> {
+        finite("decal slope", slope)?;
+        if let Some(scene) = &self.scene {
+            Decal::new(&self.state.camera, scene.width, slope, scene.depth.unwrap_or_default())?;
+        }
+        let outer = self.state.decal.replace(slope);
+        self.state.matrices_changed();
+        let result = draw(self);
+        self.state.decal = outer;
+        self.state.matrices_changed();
+        result
+    }
+
+    /// What a decal of this slope does on `target` with the present camera.
+    ///
+    /// # Errors
+    /// As [`Driver::decal`], and [`DriverError::UnknownTarget`].
+    pub fn decal_info(&self, target: &Target, slope: f64) -> Result<DecalInfo, DriverError> {
+        let options = self.target_state(target)?.options;
+        let format = options.depth.unwrap_or_default();
+        Ok(Decal::new(&self.state.camera, options.width, slope, format)?.info)
+    }
+
+    /// Sends the state a clear needs.
+    pub(crate) fn prepare_clear(&mut self) -> Result<(), DriverError> {
+        self.adopt_recovered();
+        self.registers.want(Reg::ScissorMinimum, &self.state.scissor);
+        self.send_registers()
+    }
+
+    /// Sends the state a draw needs. `gouraud`: colours differ within a primitive.
+    pub(crate) fn prepare_draw(&mut self, call: &'static str, gouraud: bool) -> Result<(), DriverError> {
+        self.adopt_recovered();
+        let scene = self.open_scene(call)?;
+        let (width, height, depth) = (scene.width, scene.height, scene.depth);
+        self.compose_matrices(width, height, depth)?;
+        let state = &self.state;
+        let tests_depth = depth.is_some() && (state.depth_function != DepthFunction::Always || state.depth_write);
+        let mut effects = Effects::empty();
+        effects.set(Effects::DEPTH, tests_depth);
+        effects.set(Effects::GOURAUD, gouraud);
+        effects.set(Effects::PERSPECTIVE, gouraud && state.camera.is_perspective());
+        effects.set(Effects::DECAL, state.decal.is_some());
+        let control = state.depth_function.code() | if state.depth_write { DEPTH_WRITE } else { 0 };
+        let [minimum, maximum] = state.scissor;
+        let words = [effects.bits(), control, state.material, state.tag, minimum, maximum];
+        // EFFECTS to SCISSOR_MAXIMUM are neighbours.
+        for (register, word) in DRAW_STATE.into_iter().zip(words) {
+            self.registers.want(register, &[word]);
+        }
+        self.send_registers()
+    }
+
+    /// Composes the matrices if they are due.
+    fn compose_matrices(
+        &mut self,
+        width: u32,
+        height: u32,
+        depth: Option<zga_abi::format::DepthFormat>,
+    ) -> Result<(), DriverError> {
+        if !self.state.matrices_due {
+            return Ok(());
+        }
+        let state = &self.state;
+        let matrices = state.camera.matrices(width, height)?;
+        let object_eye = camera::narrow(state.camera.view()? * state.object);
+        let decal = match state.decal {
+            Some(slope) => Some(Decal::new(&state.camera, width, slope, depth.unwrap_or_default())?),
+            None => None,
+        };
+        if let (Some(Decal { info, .. }), Some(depth)) = (decal, depth)
+            && let Some(distance) = info.one_step_distance
+        {
+            let (slope, steps_far) = (info.slope, info.depth_steps_far);
+            self.warn(Warning::DecalUnderOneStep { slope, depth_bits: depth.bits(), steps_far, distance });
+        }
+        self.registers.want(Reg::ObjectEye, &object_eye.map(f32::to_bits));
+        // Outside a decal scope the matrix is not in use: what is there can stay.
+        if let Some(decal) = decal {
+            self.registers.want(Reg::Decal, &decal.matrix.map(f32::to_bits));
+        }
+        self.registers.want(Reg::EyeClip, &matrices.eye_clip.map(f32::to_bits));
+        self.registers.want(Reg::Viewport, &matrices.viewport.map(f32::to_bits));
+        self.state.matrices_due = false;
+        Ok(())
+    }
+}
+
+/// The registers of a draw's state, in order.
+const DRAW_STATE: [Reg; 6] =
+    [Reg::Effects, Reg::DepthControl, Reg::MaterialColour, Reg::ObjectTag, Reg::ScissorMinimum, Reg::ScissorMaximum];

@@ -1,0 +1,283 @@
+//! Targets, scenes and presenting.
+
+use zga_abi::bus::Bus;
+use zga_abi::format::{DepthFormat, PixelFormat};
+use zga_abi::packet::{CLEAR_COLOUR, CLEAR_DEPTH, Opcode, header};
+use zga_abi::registers::Reg;
+
+use crate::memory::{Alignment, Allocation};
+use crate::{Driver, DriverError};
+
+/// Largest width and height in pixels.
+const MOST_PIXELS: u32 = 16384;
+
+/// What a target is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TargetOptions {
+    /// Pixels, 1..=16384.
+    pub width: u32,
+    /// Pixels, 1..=16384.
+    pub height: u32,
+    /// Format of a pixel.
+    pub pixel_format: PixelFormat,
+    /// Number format of depth; `None` for no Z buffer.
+    pub depth: Option<DepthFormat>,
+    /// Two frame buffers: one is drawn to while the other is shown.
+    pub double_buffered: bool,
+}
+
+impl TargetOptions {
+    /// XRGB8888 with a Z buffer of 24 bits and one frame buffer.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> TargetOptions {
+        let depth = Some(DepthFormat::default());
+        TargetOptions { width, height, pixel_format: PixelFormat::Xrgb8888, depth, double_buffered: false }
+    }
+}
+
+/// A place to draw to. Given back with [`Driver::destroy_target`].
+#[derive(Debug, PartialEq, Eq)]
+#[must_use = "a target that is dropped keeps its video memory until the driver is gone"]
+pub struct Target {
+    id: u32,
+    width: u32,
+    height: u32,
+}
+
+impl Target {
+    /// Pixels.
+    #[must_use]
+    pub const fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Pixels.
+    #[must_use]
+    pub const fn height(&self) -> u32 {
+        self.height
+    }
+}
+
+/// What the driver knows of a target.
+#[derive(Debug)]
+pub(crate) struct TargetState {
+    pub options: TargetOptions,
+    buffers: Vec<Allocation>,
+    /// Which of them is drawn to.
+    back: usize,
+    pitch: u32,
+    pub depth: Option<Allocation>,
+    pub depth_pitch: u32,
+}
+
+/// The scene that is open.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scene {
+    pub id: u32,
+    pub width: u32,
+    pub height: u32,
+    pub depth: Option<DepthFormat>,
+    /// Its begin was refused: nothing can be drawn until it ends.
+    pub lost: bool,
+}
+
+/// Bytes from a row to the next for rows of `bytes` bytes: a multiple of 64, and never of 4096.
+///
+/// The same columns of rows a multiple of 4096 apart fall into the same set of a host's first-level cache
+/// (64 sets of 64 bytes): a tile of more rows than the set has ways would evict itself.
+const fn pitch_of(bytes: u32) -> u32 {
+    let pitch = bytes.next_multiple_of(64);
+    if pitch.is_multiple_of(4096) { pitch + 64 } else { pitch }
+}
+
+/// Width and height as TARGET_SIZE and SCANOUT_SIZE hold them.
+const fn size_word(width: u32, height: u32) -> u32 {
+    width | height << 16
+}
+
+impl<B: Bus> Driver<B> {
+    /// Takes video memory for a target. Its contents are what was there before: clear it.
+    ///
+    /// # Errors
+    /// [`DriverError::BadOption`] for a size out of range, [`DriverError::Memory`] if there is no room.
+    pub fn create_target(&mut self, options: TargetOptions) -> Result<Target, DriverError> {
+        let TargetOptions { width, height, .. } = options;
+        for (name, pixels) in [("target width", width), ("target height", height)] {
+            if !(1..=MOST_PIXELS).contains(&pixels) {
+                return Err(DriverError::BadOption { name, found: pixels.to_string(), expected: "1 to 16384 pixels" });
+            }
+        }
+        let (pitch, depth_pitch) = (pitch_of(width * options.pixel_format.bytes()), pitch_of(4 * width));
+        let surfaces = [Some(pitch), options.double_buffered.then_some(pitch), options.depth.map(|_| depth_pitch)];
+        let mut taken = Vec::new();
+        for pitch in surfaces.into_iter().flatten() {
+            match self.allocate(u64::from(pitch) * u64::from(height), Alignment::Line) {
+                Ok(surface) => taken.push(surface),
+                Err(refused) => {
+                    for surface in taken {
+                        self.free(surface)?;
+                    }
+                    return Err(refused);
+                }
+            }
+        }
+        let depth = options.depth.and_then(|_| taken.pop());
+        let depth_pitch = if depth.is_some() { depth_pitch } else { 0 };
+        let id = self.next_target;
+        self.next_target = id.wrapping_add(1);
+        self.targets.insert(id, TargetState { options, buffers: taken, back: 0, pitch, depth, depth_pitch });
+        Ok(Target { id, width, height })
+    }
+
+    /// Gives a target's memory back. If one of its frames is shown, the screen goes dark.
+    ///
+    /// # Errors
+    /// [`DriverError::UnknownTarget`]; [`DriverError::InsideScene`] if it is being drawn to.
+    #[expect(clippy::needless_pass_by_value, reason = "destroying takes the handle away from its holder")]
+    pub fn destroy_target(&mut self, target: Target) -> Result<(), DriverError> {
+        let state = self.target_state(&target)?;
+        let shown = self.registers.wanted(Reg::ScanoutBase);
+        let is_shown = self.shown.is_some() && state.buffers.iter().any(|buffer| buffer.address() == shown);
+        if self.scene.is_some_and(|scene| scene.id == target.id) {
+            return Err(DriverError::InsideScene { call: "destroy_target" });
+        }
+        if is_shown {
+            self.registers.want(Reg::ScanoutSize, &[0]);
+            self.shown = None;
+            self.send_registers()?;
+        }
+        if let Some(state) = self.targets.remove(&target.id) {
+            for surface in state.buffers.into_iter().chain(state.depth) {
+                self.free(surface)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Begins a scene: the draws that follow go to `target`, to the frame buffer that is not shown.
+    ///
+    /// # Errors
+    /// [`DriverError::InsideScene`], [`DriverError::UnknownTarget`], or as [`Driver::flush`].
+    pub fn begin_scene(&mut self, target: &Target) -> Result<(), DriverError> {
+        if self.scene.is_some() {
+            return Err(DriverError::InsideScene { call: "begin_scene" });
+        }
+        self.adopt_recovered();
+        let state = self.targets.get(&target.id).ok_or(DriverError::UnknownTarget { id: target.id })?;
+        let TargetOptions { width, height, pixel_format, depth, .. } = state.options;
+        let base = state.buffers[state.back].address();
+        self.registers.want(Reg::TargetSize, &[size_word(width, height)]);
+        self.registers.want(Reg::ColourBase, &[base]);
+        self.registers.want(Reg::ColourPitch, &[state.pitch]);
+        self.registers.want(Reg::ColourFormat, &[pixel_format.code()]);
+        self.registers.want(Reg::DepthPitch, &[state.depth_pitch]);
+        if let (Some(format), Some(surface)) = (depth, &state.depth) {
+            self.registers.want(Reg::DepthBase, &[surface.address()]);
+            self.registers.want(Reg::DepthFormat, &[format.code()]);
+        }
+        self.registers.want(Reg::HiddenSurface, &[self.state.hidden_surface.code()]);
+        self.registers.want(Reg::SubpixelBits, &[self.state.subpixel_bits]);
+        if self.state.composed_for != (width, height) {
+            self.state.composed_for = (width, height);
+            self.state.matrices_changed();
+        }
+        self.scene = Some(Scene { id: target.id, width, height, depth, lost: false });
+        let registers = self.send_registers();
+        registers.and(self.encode(Opcode::BeginScene, &[]))
+    }
+
+    /// Clears frame buffer and Z buffer inside the scissor: RGBA and depth (0 near to 1 far), `None` leaves as is.
+    ///
+    /// # Errors
+    /// [`DriverError::OutsideScene`]; [`DriverError::NoDepthBuffer`] for a depth where there is none;
+    /// [`DriverError::BadOption`] for a depth outside 0..=1; or as [`Driver::flush`].
+    pub fn clear(&mut self, colour: Option<[u8; 4]>, depth: Option<f32>) -> Result<(), DriverError> {
+        let scene = self.open_scene("clear")?;
+        let mut planes = if colour.is_some() { CLEAR_COLOUR } else { 0 };
+        let mut value = 0;
+        if let Some(depth) = depth {
+            let format = scene.depth.ok_or(DriverError::NoDepthBuffer { id: scene.id })?;
+            if !(0.0..=1.0).contains(&depth) {
+                let found = depth.to_string();
+                return Err(DriverError::BadOption { name: "clear depth", found, expected: "0 (near) to 1 (far)" });
+            }
+            planes |= CLEAR_DEPTH;
+            value = (f64::from(depth) * f64::from(format.maximum()) + 0.5).floor() as u32;
+        }
+        if planes == 0 {
+            return Ok(());
+        }
+        let colour = u32::from_le_bytes(colour.unwrap_or_default());
+        let state = self.prepare_clear();
+        self.encode_in_scene("clear", state, Opcode::Clear, &[&[planes, colour, value]])
+    }
+
+    /// Ends the scene: when what follows is executed, everything drawn is in memory.
+    ///
+    /// # Errors
+    /// [`DriverError::OutsideScene`], or as [`Driver::flush`].
+    pub fn end_scene(&mut self) -> Result<(), DriverError> {
+        self.adopt_recovered();
+        let scene = self.scene.take().ok_or(DriverError::OutsideScene { call: "end_scene" })?;
+        if scene.lost { Ok(()) } else { self.encode(Opcode::EndScene, &[]) }
+    }
+
+    /// Shows what was drawn to `target` from the next vertical blank on. With two frame buffers the next
+    /// scene goes to the other one.
+    ///
+    /// # Errors
+    /// [`DriverError::InsideScene`], [`DriverError::UnknownTarget`], or as [`Driver::flush`].
+    pub fn present(&mut self, target: &Target) -> Result<(), DriverError> {
+        if self.scene.is_some() {
+            return Err(DriverError::InsideScene { call: "present" });
+        }
+        self.adopt_recovered();
+        let state = self.targets.get_mut(&target.id).ok_or(DriverError::UnknownTarget { id: target.id })?;
+        let base = state.buffers[state.back].address();
+        state.back = (state.back + 1) % state.buffers.len();
+        let TargetOptions { width, height, pixel_format, .. } = state.options;
+        self.registers.want(Reg::ScanoutPitch, &[state.pitch]);
+        self.registers.want(Reg::ScanoutFormat, &[pixel_format.code()]);
+        self.registers.want(Reg::ScanoutSize, &[size_word(width, height)]);
+        self.shown = Some((width, height));
+        let registers = self.send_registers();
+        self.registers.follow(&[header(Opcode::Present, 1), base]);
+        registers.and(self.encode(Opcode::Present, &[&[base]]))
+    }
+
+    /// Where a target's surfaces are, for packets that the driver has no method for: first byte and pitch of
+    /// the frame buffer that is drawn to, and of the Z buffer.
+    ///
+    /// # Errors
+    /// [`DriverError::UnknownTarget`].
+    pub fn target_surfaces(&self, target: &Target) -> Result<[Option<(u32, u32)>; 2], DriverError> {
+        let state = self.target_state(target)?;
+        let colour = (state.buffers[state.back].address(), state.pitch);
+        Ok([Some(colour), state.depth.as_ref().map(|surface| (surface.address(), state.depth_pitch))])
+    }
+
+    /// What is known of a target.
+    pub(crate) fn target_state(&self, target: &Target) -> Result<&TargetState, DriverError> {
+        self.targets.get(&target.id).ok_or(DriverError::UnknownTarget { id: target.id })
+    }
+
+    /// Number of a target.
+    pub(crate) const fn target_id(target: &Target) -> u32 {
+        target.id
+    }
+
+    /// The open scene, unless it was lost.
+    pub(crate) fn open_scene(&self, call: &'static str) -> Result<Scene, DriverError> {
+        self.scene.filter(|scene| !scene.lost).ok_or(DriverError::OutsideScene { call })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pitch_of_is_a_multiple_of_64_but_not_of_4096() {
+        assert_eq!([1, 64, 65, 2560, 4096, 4095, 8192].map(pitch_of), [64, 64, 128, 2560, 4160, 4160, 8256]);
+    }
+}
