@@ -50,12 +50,29 @@ impl Reg {
     /// The register that owns the word at byte `offset` of the aperture, and which of its words it is.
     #[must_use]
     pub fn at(offset: u32) -> Option<(Reg, u32)> {
-        let after = REGISTERS.partition_point(|r| r.offset <= offset);
-        let reg = *Reg::ALL.get(after.checked_sub(1)?)?;
-        let word = (offset - reg.offset()) / 4;
-        (word < reg.info().count && offset.is_multiple_of(4)).then_some((reg, word))
+        let owner = usize::from(*OWNERS.get(offset as usize / 4)?);
+        let reg = *Reg::ALL.get(owner)?;
+        offset.is_multiple_of(4).then(|| (reg, (offset - reg.offset()) / 4))
     }
 }
+
+/// For each word of the aperture the number of the register that owns it; [`u16::MAX`] is nobody.
+///
+/// A table, since the card and its firmware look up every word of a register write.
+static OWNERS: [u16; crate::bus::REGISTERS_BYTES as usize / 4] = {
+    let mut owners = [u16::MAX; crate::bus::REGISTERS_BYTES as usize / 4];
+    let mut number = 0;
+    while number < REGISTERS.len() {
+        let (first, count) = (REGISTERS[number].offset as usize / 4, REGISTERS[number].count as usize);
+        let mut word = first;
+        while word < first + count {
+            owners[word] = number as u16;
+            word += 1;
+        }
+        number += 1;
+    }
+    owners
+};
 
 registers! {
     // Identification -------------------------------------------------------------------------
