@@ -1,0 +1,249 @@
+//! The benchmark scenes: fixed, made with integers only, the same on every machine and in every language.
+//!
+//! Scene k draws from PCG32 with the seed 0x5EED0000 + k and the stream k. All arithmetic is on integers; division
+//! truncates toward zero. The check hashes in the tests are those of the definition.
+
+/// PCG-XSH-RR 64/32 with the reference seeding.
+struct Pcg32 {
+    state: u64,
+    increment: u64,
+}
+
+impl Pcg32 {
+    fn new(seed: u64, stream: u64) -> Self {
+        let mut generator = Pcg32 { state: 0, increment: (stream << 1) | 1 };
+        generator.next();
+        generator.state = generator.state.wrapping_add(seed);
+        generator.next();
+        generator
+    }
+
+    fn next(&mut self) -> u32 {
+        let old = self.state;
+        self.state = old.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(self.increment);
+        let word = (((old >> 18) ^ old) >> 27) as u32;
+        word.rotate_right((old >> 59) as u32)
+    }
+
+    /// A number from 0 up to and without `n`: a 64-bit product, no rejection.
+    fn below(&mut self, n: u32) -> i32 {
+        ((u64::from(self.next()) * u64::from(n)) >> 32) as i32
+    }
+
+    fn colour(&mut self) -> [u8; 4] {
+        let [red, green, blue, _] = self.next().to_le_bytes();
+        [red, green, blue, 255]
+    }
+}
+
+/// A corner of a primitive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Corner {
+    /// Pixels times 256.
+    pub x: i32,
+    /// Pixels times 256, y down.
+    pub y: i32,
+    /// Depth times 65536: 0 near, 65536 far.
+    pub depth: i32,
+    /// Red, green, blue, alpha.
+    pub colour: [u8; 4],
+}
+
+/// A benchmark scene.
+#[derive(Clone, Debug)]
+pub struct BenchScene {
+    /// Its number, 1..=7.
+    pub number: u32,
+    /// Pixels of a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Lines, else triangles.
+    pub lines: bool,
+    /// Primitives.
+    pub primitives: usize,
+    /// Corners of the primitives, in order.
+    pub corners: Vec<Corner>,
+    /// Nominal pixels: the sum of the triangles' areas, or of the lines' longer sides.
+    pub pixels: f64,
+}
+
+/// Numbers, names and descriptions of the scenes there are.
+pub const SCENES: [(u32, &str, &str); 7] = [
+    (1, "clear", "only the clear; its red value changes every frame"),
+    (2, "fill far", "64 layers from far to near: every pixel passes"),
+    (3, "fill hidden", "64 layers from near to far: all but the first are hidden"),
+    (4, "small", "200 000 triangles of about 20 pixels"),
+    (5, "medium", "20 000 triangles of about 400 pixels"),
+    (6, "slivers", "20 000 triangles, 300 pixels long and 0.75 wide"),
+    (7, "lines", "100 000 lines of about 60 pixels"),
+];
+
+type Triangle = [[i32; 2]; 3];
+
+/// Twice the area, in squared units.
+fn cross([a, b, c]: Triangle) -> i64 {
+    let part = |p: [i32; 2], axis: usize| i64::from(p[axis]) - i64::from(a[axis]);
+    (part(b, 0) * part(c, 1) - part(c, 0) * part(b, 1)).abs()
+}
+
+/// A triangle in a box of `side` pixels with an area of `area` pixels.
+fn box_triangle(generator: &mut Pcg32, side: u32, area: [i64; 2]) -> Triangle {
+    loop {
+        let mut triangle = Triangle::default();
+        for coordinate in triangle.iter_mut().flatten() {
+            *coordinate = generator.below(side * 256 + 1);
+        }
+        if (area[0] * 131_072..=area[1] * 131_072).contains(&cross(triangle)) {
+            return triangle;
+        }
+    }
+}
+
+/// The ends of a line of `length` pixels in the viewport; for slivers the third corner as well.
+fn segment(generator: &mut Pcg32, [width, height]: [i32; 2], length: [i64; 2], sliver: bool) -> Triangle {
+    let (right, bottom, most) = (width * 256, height * 256, length[1] as i32 * 256);
+    let inside = |x: i32, y: i32| (0..=right).contains(&x) && (0..=bottom).contains(&y);
+    loop {
+        let (x, y) = (generator.below(right as u32 + 1), generator.below(bottom as u32 + 1));
+        let (dx, dy) = (generator.below(2 * most as u32 + 1) - most, generator.below(2 * most as u32 + 1) - most);
+        let square = i64::from(dx) * i64::from(dx) + i64::from(dy) * i64::from(dy);
+        let third = [x + dx / 2 - dy / 400, y + dy / 2 + dx / 400];
+        let fits = (length[0] * length[0] * 65_536..=length[1] * length[1] * 65_536).contains(&square);
+        if fits && inside(x + dx, y + dy) && (!sliver || inside(third[0], third[1])) {
+            return [[x, y], [x + dx, y + dy], third];
+        }
+    }
+}
+
+/// Puts corners at `places`, at depths near to each other.
+fn place(generator: &mut Pcg32, corners: &mut [Corner], places: Triangle) {
+    for (corner, [x, y]) in corners.iter_mut().zip(places) {
+        (corner.x, corner.y) = (x, y);
+    }
+    let middle = 1024 + generator.below(62_464);
+    for corner in corners {
+        corner.depth = middle + generator.below(1025) - 512;
+    }
+}
+
+impl BenchScene {
+    /// Scene `number` for a viewport of this size; `None` for a number that is none of [`SCENES`], or a viewport
+    /// too small for its primitives.
+    #[must_use]
+    pub fn new(number: u32, width: u32, height: u32) -> Option<Self> {
+        // The least side that the boxes and segments fit into, with room to spare.
+        let least = [1, 1, 1, 9, 49, 320, 80].get(number.checked_sub(1)? as usize).copied()?;
+        if width.min(height) < least || width.max(height) > crate::limits::MAX_TARGET_PIXELS_PER_SIDE {
+            return None;
+        }
+        let primitives = [0, 128, 128, 200_000, 20_000, 20_000, 100_000][number as usize - 1];
+        let lines = number == 7;
+        let each = if lines { 2 } else { 3 };
+        let mut corners = vec![Corner::default(); primitives * each];
+        let mut generator = Pcg32::new(0x5EED_0000 + u64::from(number), u64::from(number));
+        let size = [width as i32, height as i32];
+        match number {
+            2 | 3 => layers(&mut generator, &mut corners, size, number == 2),
+            4 | 5 => {
+                let (side, area) = if number == 4 { (8, [17, 27]) } else { (48, [300, 500]) };
+                for corners in corners.chunks_exact_mut(3) {
+                    let left = generator.below((width - side) * 256 + 1);
+                    let top = generator.below((height - side) * 256 + 1);
+                    let triangle = box_triangle(&mut generator, side, area);
+                    place(&mut generator, corners, triangle.map(|[x, y]| [left + x, top + y]));
+                    corners.iter_mut().for_each(|corner| corner.colour = generator.colour());
+                }
+            }
+            6 => {
+                for corners in corners.chunks_exact_mut(3) {
+                    let triangle = segment(&mut generator, size, [290, 310], true);
+                    place(&mut generator, corners, triangle);
+                    corners.iter_mut().for_each(|corner| corner.colour = generator.colour());
+                }
+            }
+            7 => {
+                for corners in corners.chunks_exact_mut(2) {
+                    let ends = segment(&mut generator, size, [55, 65], false);
+                    place(&mut generator, corners, ends);
+                    let colour = generator.colour();
+                    corners.iter_mut().for_each(|corner| corner.colour = colour);
+                }
+            }
+            _ => {}
+        }
+        let pixels = match number {
+            1 => f64::from(width) * f64::from(height),
+            7 => corners.chunks_exact(2).map(longer_side).sum(),
+            _ => corners.chunks_exact(3).map(area).sum(),
+        };
+        Some(Self { number, width, height, lines, primitives, corners, pixels })
+    }
+
+    /// FNV-1a over all corners, the check value of the definition (texture coordinates count as 0).
+    #[must_use]
+    pub fn fnv(&self) -> u64 {
+        let mut hash = 0xCBF2_9CE4_8422_2325_u64;
+        let mut put = |byte: u8| hash = (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3);
+        for corner in &self.corners {
+            for word in [corner.x, corner.y, corner.depth, 0, 0] {
+                word.to_le_bytes().into_iter().for_each(&mut put);
+            }
+            corner.colour.into_iter().for_each(&mut put);
+        }
+        hash
+    }
+}
+
+/// 64 layers of two triangles over the whole viewport.
+fn layers(generator: &mut Pcg32, corners: &mut [Corner], [width, height]: [i32; 2], from_far: bool) {
+    const PLACES: [[i32; 2]; 6] = [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]];
+    for (layer, corners) in (0..).zip(corners.chunks_exact_mut(6)) {
+        let colour = generator.colour();
+        let depth = if from_far { 64 - layer } else { layer + 1 } * 1000;
+        for (corner, [x, y]) in corners.iter_mut().zip(PLACES) {
+            *corner = Corner { x: x * width * 256, y: y * height * 256, depth, colour };
+        }
+    }
+}
+
+fn area(corners: &[Corner]) -> f64 {
+    let triangle = std::array::from_fn(|i| [corners[i].x, corners[i].y]);
+    cross(triangle) as f64 / 131_072.0
+}
+
+fn longer_side(corners: &[Corner]) -> f64 {
+    f64::from((corners[1].x - corners[0].x).abs().max((corners[1].y - corners[0].y).abs())) / 256.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(number: u32, primitives: usize, pixels: f64, fnv: u64) {
+        let scene = BenchScene::new(number, 1024, 768).expect("there");
+        assert_eq!(scene.primitives, primitives, "S{number}");
+        assert_eq!(scene.fnv(), fnv, "S{number}");
+        // The definition gives one digit behind the point.
+        assert!((scene.pixels - pixels).abs() < 0.06, "S{number}: {}", scene.pixels);
+    }
+
+    #[test]
+    fn scenes_have_the_hashes_of_their_definition() {
+        check(2, 128, 50_331_648.0, 0xACEF_8BCF_8BE5_0DED);
+        check(3, 128, 50_331_648.0, 0xFBC1_978A_70BF_0E4D);
+        check(4, 200_000, 3_897_053.7, 0xD7C9_CC82_3D3F_DC57);
+        check(5, 20_000, 7_630_619.8, 0x43CC_9361_AFC1_97DA);
+        check(6, 20_000, 2_244_101.3, 0xE402_024E_D899_D382);
+        check(7, 100_000, 5_418_301.7, 0xC77F_E174_0600_731C);
+    }
+
+    #[test]
+    fn new_unknown_number_or_small_viewport_is_none() {
+        assert!(BenchScene::new(0, 64, 64).is_none());
+        assert!(BenchScene::new(8, 1024, 768).is_none());
+        assert!(BenchScene::new(6, 100, 768).is_none());
+        assert!(BenchScene::new(1, 1, 1).is_some_and(|scene| scene.corners.is_empty()));
+    }
+}

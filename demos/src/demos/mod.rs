@@ -1,0 +1,165 @@
+//! The built-in scenes: what `zga list` lists and `zga show NAME` shows.
+//!
+//! Each is a function from a frame number to a scene, so that it can move; frame 0 is the picture for a still.
+
+mod curve;
+mod decal_compare;
+mod depth;
+mod palette;
+mod points;
+mod raster;
+mod shapes;
+mod solids;
+mod teapot;
+mod text;
+mod wireframe;
+
+use crate::scene::Scene;
+
+/// A named scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Demo {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub description: &'static str,
+    /// Frames after which it repeats; 1 for a still.
+    pub frames: u32,
+    scene: fn(u32) -> Scene,
+}
+
+impl Demo {
+    /// The scene at a frame; frames past the last begin again.
+    #[must_use]
+    pub fn build(&self, frame: u32) -> Scene {
+        (self.scene)(frame % self.frames)
+    }
+}
+
+/// Size of the demonstrations, in pixels.
+const SIZE: [u32; 2] = [800, 600];
+
+/// Frames of a full turn.
+const TURN: u32 = 180;
+
+/// All demonstrations; the first is the one that `zga` shows by itself.
+pub const DEMOS: &[Demo] = &[
+    Demo {
+        name: "teapot",
+        description: "the Utah teapot with markings drawn on it as decals",
+        frames: TURN,
+        scene: teapot::scene,
+    },
+    Demo {
+        name: "decal-compare",
+        description: "the same drawing on three slopes, as plain lines (left) and as decals (right)",
+        frames: TURN,
+        scene: decal_compare::scene,
+    },
+    Demo {
+        name: "wireframe",
+        description: "a knot as lines, with the hidden ones removed by the surface behind them",
+        frames: TURN,
+        scene: wireframe::scene,
+    },
+    Demo {
+        name: "curve",
+        description: "Bézier curves as decals on the Bézier patch that they belong to, with its control net",
+        frames: TURN,
+        scene: curve::scene,
+    },
+    Demo {
+        name: "interpenetrate",
+        description: "solids that run through each other, where the depth test draws every seam",
+        frames: TURN,
+        scene: solids::scene,
+    },
+    Demo {
+        name: "points",
+        description: "a cloud of points round a torus, the far ones hidden by it",
+        frames: TURN,
+        scene: points::scene,
+    },
+    Demo {
+        name: "depth-fight",
+        description: "tiles a hair above a floor: 16 bits of depth cannot keep them apart far away",
+        frames: depth::FRAMES,
+        scene: depth::scene_16,
+    },
+    Demo {
+        name: "depth-fight-24",
+        description: "the same tiles with 24 bits of depth",
+        frames: depth::FRAMES,
+        scene: depth::scene_24,
+    },
+    Demo {
+        name: "gouraud",
+        description: "colours interpolated over triangles: a wheel of hues and the three primaries",
+        frames: 1,
+        scene: raster::gouraud,
+    },
+    Demo {
+        name: "lines-octants",
+        description: "lines in every direction, from the centre outwards and back",
+        frames: 1,
+        scene: raster::lines_octants,
+    },
+    Demo {
+        name: "slivers",
+        description: "triangles thinner than a pixel that share every edge: no hole, no double pixel",
+        frames: 1,
+        scene: raster::slivers,
+    },
+];
+
+/// The demonstration with this name.
+#[must_use]
+pub fn find(name: &str) -> Option<&'static Demo> {
+    DEMOS.iter().find(|demo| demo.name == name)
+}
+
+/// Part of a full turn at a frame, in radians.
+fn turn(frame: u32) -> f64 {
+    std::f64::consts::TAU * f64::from(frame) / f64::from(TURN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn demos_names_differ_and_are_found() {
+        let names: HashSet<&str> = DEMOS.iter().map(|demo| demo.name).collect();
+        assert_eq!(names.len(), DEMOS.len());
+        assert!(DEMOS.iter().all(|demo| find(demo.name).is_some_and(|found| found.name == demo.name)));
+        assert!(find("no such demo").is_none());
+    }
+
+    #[test]
+    fn demos_every_frame_tried_gives_sound_batches() {
+        for demo in DEMOS {
+            for frame in [0, demo.frames / 3, demo.frames - 1] {
+                let batches = demo.build(frame).batches();
+                assert!(!batches.is_empty(), "{}", demo.name);
+                for batch in batches {
+                    let count = batch.positions.len();
+                    assert_eq!(batch.colours.len(), count, "{} {}", demo.name, batch.path);
+                    assert!(batch.indices.iter().all(|index| (*index as usize) < count));
+                    assert!(batch.positions.iter().flatten().all(|coordinate| coordinate.is_finite()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn demos_call_for_no_effect_beyond_colours_and_decals() {
+        assert!(DEMOS.iter().all(|demo| demo.build(0).unsupported_effects().is_empty()));
+    }
+
+    #[test]
+    fn build_past_the_last_frame_begins_again() {
+        let demo = find("teapot").expect("listed");
+        assert_eq!(demo.build(demo.frames + 2), demo.build(2));
+    }
+}

@@ -1,0 +1,21 @@
+//! A scene through driver and card.
+//!
+//! Duties: powers a card on, opens it with the driver, turns [`Scene::batches`](crate::scene::Scene::batches) into draw
+//! calls, takes frames, and reads what they cost. Inputs from: scenes and [`Settings`]. Outputs to: the commands.
+//!
+//! | file | holds |
+//! | --- | --- |
+//! | `settings` | what is asked of the card, and what it has |
+//! | `look` | decals and wireframe switched |
+//! | `session` | the card, the driver and the meshes in video memory |
+//! | `cost` | effects, units, clocks and counters of a frame |
+
+mod cost;
+mod look;
+mod session;
+mod settings;
+
+pub use cost::{Cost, effect_names, unit_names};
+pub use look::Look;
+pub use session::Session;
+pub use settings::{Asked, KERNELS, Settings, check_kernel};

@@ -1,0 +1,282 @@
+//! A card with power, the driver that opened it, and the meshes of a scene in its video memory.
+
+use std::io::Write;
+use std::time::Instant;
+
+use zga_abi::Bus;
+use zga_abi::format;
+use zga_device::{Card, CardBus, CardOptions, Monitor};
+use zga_driver::bus::RecordingBus;
+use zga_driver::{Camera, Driver, Frame, MeshBuffer, Target, TargetOptions, Vertex};
+
+use super::{Asked, Cost, Look, Settings, check_kernel};
+use crate::error::{Error, Result};
+use crate::scene::{self, Batch, Scene, Topology};
+
+/// Video memory is taken in steps of this, and at least four of them.
+const MEMORY_STEP: u64 = 16 << 20;
+/// Most video memory that a card can have.
+const MOST_MEMORY: u64 = 1 << 30;
+
+/// A scene on a card.
+#[derive(Debug)]
+pub struct Session<B: Bus = CardBus> {
+    name: String,
+    driver: Driver<B>,
+    target: Target,
+    settings: Settings,
+    size: [u32; 2],
+    meshes: Vec<Uploaded>,
+    /// Draw path of each draw packet of the frame that was drawn last.
+    drawn: Vec<String>,
+    warned: Vec<String>,
+    // Last: the driver goes before its card.
+    card: Card,
+}
+
+/// A batch whose vertices are in video memory.
+#[derive(Debug)]
+struct Uploaded {
+    batch: Batch,
+    mesh: MeshBuffer,
+}
+
+impl Session<CardBus> {
+    /// Powers a card on for a scene called `name` (in messages).
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] for settings that the card has not; [`Error::Card`], [`Error::Driver`].
+    pub fn open(name: &str, scene: &Scene, asked: &Asked) -> Result<Self> {
+        let card = power_on(name, scene, asked)?;
+        let bus = card.bus();
+        Session::on(name, scene, asked, card, bus)
+    }
+}
+
+impl<W: Write> Session<RecordingBus<CardBus, W>> {
+    /// The same with a recorder on the bus, which writes a trace to `to`.
+    ///
+    /// # Errors
+    /// As [`Session::open`]; [`Error::Trace`] if the trace's header could not be written.
+    pub fn record(name: &str, scene: &Scene, asked: &Asked, to: W, file: &std::path::Path) -> Result<Self> {
+        let card = power_on(name, scene, asked)?;
+        let fault = |reason| Error::Trace { file: file.to_path_buf(), reason };
+        let bus = RecordingBus::new(card.bus(), to).map_err(fault)?;
+        Session::on(name, scene, asked, card, bus)
+    }
+
+    /// Ends the recording and gives the writer back.
+    ///
+    /// # Errors
+    /// [`Error::Driver`], [`Error::Trace`].
+    pub fn finish_recording(self, file: &std::path::Path) -> Result<W> {
+        let bus = self.driver.close().map_err(Error::driver(&self.name))?;
+        let fault = |reason| Error::Trace { file: file.to_path_buf(), reason };
+        bus.finish().map(|(_, writer)| writer).map_err(fault)
+    }
+}
+
+/// A card with memory for the scene.
+fn power_on(name: &str, scene: &Scene, asked: &Asked) -> Result<Card> {
+    check_kernel(asked.kernel)?;
+    let options = CardOptions {
+        video_memory: video_memory(scene),
+        threads: asked.threads,
+        kernel: asked.kernel,
+        ..CardOptions::default()
+    };
+    Card::power_on(options).map_err(|reason| Error::Card { place: name.to_owned(), reason })
+}
+
+/// Bytes of video memory for a scene: two frame buffers, a Z buffer, a copy to read back, and room for its vertices,
+/// twice, since a frame's may still be in use while the next one's are written.
+fn video_memory(scene: &Scene) -> u32 {
+    let pixels = (u64::from(scene.size[0]) + 128) * u64::from(scene.size[1]);
+    // As a wireframe a batch has its vertices twice, and two indices for each of its triangles' edges.
+    let words = |batch: &Batch| 2 * 4 * batch.positions.len() + 3 * batch.indices.len() + 64;
+    let words: usize = scene.batches().iter().map(words).sum();
+    let bytes = 4 * 4 * pixels + 2 * 4 * words as u64 + (4 << 20);
+    bytes.next_multiple_of(MEMORY_STEP).clamp(4 * MEMORY_STEP, MOST_MEMORY) as u32
+}
+
+impl<B: Bus> Session<B> {
+    fn on(name: &str, scene: &Scene, asked: &Asked, card: Card, bus: B) -> Result<Self> {
+        let fault = || Error::driver(name);
+        let mut driver = Driver::open(bus).map_err(fault())?;
+        let settings = Settings::resolve(name, &scene.card, asked, driver.card_info())?;
+        driver.set_hidden_surface(settings.hidden_surface).map_err(fault())?;
+        driver.set_subpixel_bits(settings.subpixel_bits).map_err(fault())?;
+        let [width, height] = scene.size;
+        let target = driver
+            .create_target(TargetOptions {
+                depth: Some(settings.depth),
+                double_buffered: true,
+                ..TargetOptions::new(width, height)
+            })
+            .map_err(fault())?;
+        Ok(Session {
+            name: name.to_owned(),
+            driver,
+            target,
+            settings,
+            size: scene.size,
+            meshes: Vec::new(),
+            drawn: Vec::new(),
+            warned: Vec::new(),
+            card,
+        })
+    }
+
+    /// What the card is set to.
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Pixels of a row, and rows.
+    pub const fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// A display at the card.
+    pub fn monitor(&self) -> Monitor {
+        self.card.monitor()
+    }
+
+    /// The driver.
+    pub const fn driver(&mut self) -> &mut Driver<B> {
+        &mut self.driver
+    }
+
+    /// Path in the scene of a draw of the last frame.
+    #[must_use]
+    pub fn draw_path(&self, draw: u32) -> Option<&str> {
+        self.drawn.get(draw as usize).map(String::as_str)
+    }
+
+    /// What the driver found worth telling since the last call, each line once in a session.
+    pub fn take_warnings(&mut self) -> Vec<String> {
+        let lines = self.driver.take_warnings().into_iter().map(|warning| warning.to_string());
+        let fresh: Vec<String> = lines.filter(|line| !self.warned.contains(line)).collect();
+        self.warned.extend(fresh.iter().cloned());
+        fresh
+    }
+
+    /// Draws a scene and shows it; returns when the card is asked, not when it is done.
+    ///
+    /// # Errors
+    /// [`Error::Driver`] with the path of the draw at fault.
+    pub fn draw(&mut self, scene: &Scene, look: Look) -> Result<()> {
+        let batches = look.batches(scene);
+        self.upload(batches)?;
+        self.submit(scene)
+    }
+
+    /// Puts the batches into video memory; those that are there already stay.
+    fn upload(&mut self, batches: Vec<Batch>) -> Result<()> {
+        let mut old = std::mem::take(&mut self.meshes).into_iter();
+        for batch in batches {
+            let place = || Error::driver(format!("{}: {}", self.name, batch.path));
+            let mesh = match old.next() {
+                Some(known) if same_vertices(&known.batch, &batch) => known.mesh,
+                other => {
+                    if let Some(known) = other {
+                        self.driver.free_mesh(known.mesh).map_err(place())?;
+                    }
+                    let vertices = batch.positions.iter().zip(&batch.colours);
+                    let vertices: Vec<Vertex> = vertices.map(|(at, colour)| Vertex::new(*at, *colour)).collect();
+                    self.driver
+                        .upload_mesh(topology(batch.topology), &vertices, Some(&batch.indices))
+                        .map_err(place())?
+                }
+            };
+            self.meshes.push(Uploaded { batch, mesh });
+        }
+        for known in old {
+            self.driver.free_mesh(known.mesh).map_err(Error::driver(&self.name))?;
+        }
+        Ok(())
+    }
+
+    /// Draws what is in video memory.
+    fn submit(&mut self, scene: &Scene) -> Result<()> {
+        let Self { name, driver, target, meshes, drawn, .. } = self;
+        let fault = || Error::driver(name.as_str());
+        drawn.clear();
+        driver.set_camera(camera(&scene.camera)).map_err(fault())?;
+        driver.begin_scene(target).map_err(fault())?;
+        driver.clear(Some(scene.background), Some(1.0)).map_err(fault())?;
+        for Uploaded { batch, mesh } in meshes {
+            if mesh.primitives() == 0 {
+                continue;
+            }
+            let place = || Error::driver(format!("{name}: {}", batch.path));
+            driver.set_object_transform(&batch.transform).map_err(place())?;
+            driver.set_tag(batch.tag);
+            match batch.slope {
+                Some(slope) => driver.decal(slope.into(), |driver| driver.draw_mesh(mesh)),
+                None => driver.draw_mesh(mesh),
+            }
+            .map_err(place())?;
+            drawn.push(batch.path.clone());
+        }
+        driver.end_scene().map_err(fault())?;
+        driver.present(target).map_err(fault())
+    }
+
+    /// Draws a scene, waits for it, and takes the frame as it is scanned out, with what it cost.
+    ///
+    /// # Errors
+    /// As [`Session::draw`].
+    pub fn frame(&mut self, scene: &Scene, look: Look) -> Result<(Frame, Cost)> {
+        let batches = look.batches(scene);
+        self.upload(batches)?;
+        let fault = |name: &str| Error::driver(name.to_owned());
+        self.driver.finish().map_err(fault(&self.name))?;
+        self.driver.clear_counters();
+        let begun = Instant::now();
+        self.submit(scene)?;
+        self.driver.finish().map_err(fault(&self.name))?;
+        let host = begun.elapsed();
+        // Before the capture, which has the card compose the frame once more.
+        let cost = Cost {
+            counters: self.driver.counters(),
+            called: self.driver.effects_called(),
+            powered: self.driver.units_powered(),
+            host,
+        };
+        Ok((self.driver.capture().map_err(fault(&self.name))?, cost))
+    }
+
+    /// The depths of the frame that was drawn last, dense rows.
+    ///
+    /// # Errors
+    /// [`Error::Driver`].
+    pub fn depths(&mut self) -> Result<Vec<u32>> {
+        self.driver.capture_depth(&self.target).map_err(Error::driver(&self.name))
+    }
+}
+
+/// Whether two batches have the same words in video memory.
+fn same_vertices(a: &Batch, b: &Batch) -> bool {
+    (a.topology, &a.indices, &a.colours, &a.positions) == (b.topology, &b.indices, &b.colours, &b.positions)
+}
+
+fn topology(topology: Topology) -> format::Topology {
+    match topology {
+        Topology::Triangles => format::Topology::Triangles,
+        Topology::Lines => format::Topology::Lines,
+        Topology::Points => format::Topology::Points,
+    }
+}
+
+fn camera(camera: &scene::Camera) -> Camera {
+    match *camera {
+        scene::Camera::Screen => Camera::Screen,
+        scene::Camera::Orthographic(scene::Orthographic { eye, target, up, width, near, far }) => {
+            Camera::Orthographic { eye, target, up, width, near, far }
+        }
+        scene::Camera::Perspective(scene::Perspective { eye, target, up, fov_x_degrees, near, far }) => {
+            Camera::Perspective { eye, target, up, fov_x_degrees, near, far }
+        }
+    }
+}

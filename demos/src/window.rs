@@ -1,0 +1,185 @@
+//! A scene in a window: the monitor at the card's cable.
+//!
+//! Duties: turns mouse and keys into cameras and looks, has the card draw when something changed, and shows what
+//! scan-out puts on the cable. Inputs from: minifb, [`zga_device::Monitor`]. Outputs to: [`Session`].
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use minifb::{Key, KeyRepeat, MouseButton, MouseMode, Window, WindowOptions};
+use zga_abi::Reg;
+use zga_abi::packet::Opcode;
+
+use crate::error::{Error, Result};
+use crate::picture::Picture;
+use crate::play::{Look, Session};
+use crate::scene::Scene;
+
+/// Radians of a turn for each pixel that the mouse is dragged.
+const TURN_PER_PIXEL: f64 = 0.008;
+/// Distance factor of a step of the wheel.
+const ZOOM_STEP: f64 = 0.92;
+/// Longest wait for a frame: scan-out gives one every 17 ms.
+const FRAME_WAIT: Duration = Duration::from_millis(50);
+/// What the keys do.
+const HELP: &str = "drag: orbit, wheel: zoom, D decals, W wireframe, Space animation, S save, Esc end";
+
+/// A window for a picture of this size; none where there is no display.
+pub(crate) fn open(name: &str, size: [u32; 2]) -> Option<Window> {
+    let [width, height] = size.map(|pixels| pixels as usize);
+    Window::new(&format!("ZGA: {name} (H for help)"), width, height, WindowOptions::default()).ok()
+}
+
+/// What is shown.
+pub(crate) struct Show<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The scene at a frame.
+    pub scene: &'a dyn Fn(u32) -> Scene,
+    /// File for saved picture number n.
+    pub save: &'a dyn Fn(u32) -> PathBuf,
+    /// How it is looked at first.
+    pub look: Look,
+}
+
+/// What mouse and keys have set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Controls {
+    look: Look,
+    yaw: f64,
+    pitch: f64,
+    zoom: f64,
+    frame: u32,
+    animated: bool,
+    help: bool,
+}
+
+impl Show<'_> {
+    /// Shows until the window is closed.
+    ///
+    /// # Errors
+    /// [`Error::Driver`]; [`Error::Write`] if a picture cannot be saved.
+    pub(crate) fn run(&self, session: &mut Session, mut window: Window) -> Result<()> {
+        let fault = || Error::driver(self.name);
+        let mut monitor = session.monitor();
+        let driver = session.driver();
+        driver.packet(Opcode::RegisterWrite, &[Reg::ScanoutControl.offset(), 1]).map_err(fault())?;
+        let mut controls =
+            Controls { look: self.look, yaw: 0.0, pitch: 0.0, zoom: 1.0, frame: 0, animated: false, help: false };
+        let mut shown: Option<Controls> = None;
+        let mut mouse: Option<(f32, f32)> = None;
+        let mut saved = 0;
+        while window.is_open() && !window.is_key_down(Key::Escape) {
+            controls.keys(&window);
+            let at = window.get_mouse_pos(MouseMode::Pass);
+            if let (Some(from), Some(to), true) = (mouse, at, window.get_mouse_down(MouseButton::Left)) {
+                controls.drag(to.0 - from.0, to.1 - from.1);
+            }
+            mouse = at;
+            if let Some((_, steps)) = window.get_scroll_wheel() {
+                controls.zoom = (controls.zoom * ZOOM_STEP.powf(f64::from(steps.signum()))).clamp(0.1, 10.0);
+            }
+            if controls.animated {
+                controls.frame = controls.frame.wrapping_add(1);
+            }
+            let title = controls.title(self.name);
+            if shown.is_none_or(|shown| shown.title(self.name) != title) {
+                window.set_title(&title);
+            }
+            if shown != Some(controls) {
+                let mut scene = (self.scene)(controls.frame);
+                scene.camera = scene.camera.orbited(controls.yaw, controls.pitch, controls.zoom);
+                session.draw(&scene, controls.look)?;
+                session.driver().finish().map_err(fault())?;
+                shown = Some(controls);
+            }
+            match monitor.wait_next(FRAME_WAIT) {
+                Some(frame) => {
+                    let size = [frame.width(), frame.height()].map(|pixels| pixels as usize);
+                    // A window that cannot be drawn to any more is as good as closed.
+                    if window.update_with_buffer(frame.pixels(), size[0], size[1]).is_err() {
+                        break;
+                    }
+                }
+                None => window.update(),
+            }
+            if window.is_key_pressed(Key::S, KeyRepeat::No) {
+                let frame = session.driver().capture().map_err(fault())?;
+                let file = self.free_file(&mut saved);
+                Picture::of_frame(&frame).save(&file)?;
+                window.set_title(&format!("ZGA: saved {}", file.display()));
+            }
+        }
+        Ok(())
+    }
+
+    /// The next file that is not there yet.
+    fn free_file(&self, number: &mut u32) -> PathBuf {
+        loop {
+            *number += 1;
+            let file = (self.save)(*number);
+            if !file.exists() {
+                return file;
+            }
+        }
+    }
+}
+
+impl Controls {
+    fn keys(&mut self, window: &Window) {
+        for key in window.get_keys_pressed(KeyRepeat::No) {
+            match key {
+                Key::D => self.look.decals = !self.look.decals,
+                Key::W => self.look.wireframe = !self.look.wireframe,
+                Key::Space => self.animated = !self.animated,
+                Key::H => self.help = !self.help,
+                _ => {}
+            }
+        }
+    }
+
+    fn drag(&mut self, right: f32, down: f32) {
+        self.yaw = (self.yaw - f64::from(right) * TURN_PER_PIXEL) % std::f64::consts::TAU;
+        self.pitch = (self.pitch + f64::from(down) * TURN_PER_PIXEL).clamp(-3.0, 3.0);
+    }
+
+    fn title(&self, name: &str) -> String {
+        if self.help {
+            return format!("ZGA: {name}: {HELP}");
+        }
+        let decals = if self.look.decals { "" } else { ", without decals" };
+        let wires = if self.look.wireframe { ", wireframe" } else { "" };
+        format!("ZGA: {name}{decals}{wires} (H for help)")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const START: Controls = Controls {
+        look: Look { decals: true, wireframe: false },
+        yaw: 0.0,
+        pitch: 0.0,
+        zoom: 1.0,
+        frame: 0,
+        animated: false,
+        help: false,
+    };
+
+    #[test]
+    fn title_tells_what_is_switched_and_the_keys() {
+        assert_eq!(START.title("teapot"), "ZGA: teapot (H for help)");
+        let bare = Controls { look: Look { decals: false, wireframe: true }, ..START };
+        assert_eq!(bare.title("teapot"), "ZGA: teapot, without decals, wireframe (H for help)");
+        assert!(Controls { help: true, ..START }.title("teapot").contains("Space animation"));
+    }
+
+    #[test]
+    fn drag_to_the_right_turns_the_camera_to_the_left() {
+        let mut controls = START;
+        controls.drag(10.0, 2000.0);
+        assert!(controls.yaw < 0.0);
+        assert!(controls.pitch <= 3.0);
+    }
+}

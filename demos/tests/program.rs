@@ -1,0 +1,245 @@
+//! The program as its users run it: pictures, goldens, reports, traces, exit codes.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// A folder of its own for each test, removed when the test passes.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Folder {
+        let folder = std::env::temp_dir().join(format!("zga-program-{}-{test}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        Folder(folder)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.0.join(name), text).expect("written");
+    }
+
+    fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.0.join(name)).expect("there")
+    }
+
+    /// Runs the program in the folder, without a display.
+    fn zga(&self, arguments: &[&str]) -> Run {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_zga"));
+        command.args(arguments).current_dir(&self.0).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+        Run(command.output().expect("the program runs"))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if !std::thread::panicking() {
+            let _ = std::fs::remove_dir_all(&self.0);
+        }
+    }
+}
+
+struct Run(Output);
+
+impl Run {
+    fn code(&self) -> Option<i32> {
+        self.0.status.code()
+    }
+
+    fn out(&self) -> String {
+        String::from_utf8_lossy(&self.0.stdout).into_owned()
+    }
+
+    fn err(&self) -> String {
+        String::from_utf8_lossy(&self.0.stderr).into_owned()
+    }
+}
+
+/// A red triangle over a blue one, and a line on it.
+const SCENE: &str = r#"{ "size": [64, 48], "background": [16, 16, 32, 255],
+  "card": {"depth_bits": 16, "depth_fraction_bits": 8},
+  "draw": [
+    {"triangles": {"vertices": [[4,4,0.5],[60,24,0.5],[4,44,0.5]], "colours": [[0,0,255,255]], "tag": 7}},
+    {"triangles": {"vertices": [[8,8,0.25],[50,24,0.25],[8,40,0.25]], "colours": [[255,0,0,255]]}},
+    {"decal": {"draw": [{"lines": {"vertices": [[4.5,24.5,0.25],[40.5,24.5,0.25]], "colours": [[255,255,255,255]]}}]}}
+  ]}"#;
+
+#[test]
+fn main_job_without_display_writes_pictures_and_tells_the_cost() {
+    let folder = Folder::new("main");
+    let run = folder.zga(&[]);
+    assert_eq!(run.code(), Some(0), "{}", run.err());
+    for name in ["teapot", "teapot-depth", "teapot-without-decals", "teapot-wireframe"] {
+        let png = folder.read(&format!("zga-out/{name}.png"));
+        assert!(png.starts_with(b"\x89PNG"), "{name}");
+    }
+    let out = run.out();
+    for part in ["depth, gouraud, perspective, decal", "geometry.primitives", "z_buffer", "Host time"] {
+        assert!(out.contains(part), "no {part:?} in {out}");
+    }
+}
+
+#[test]
+fn show_report_has_the_fields_and_counters_add_up() {
+    let folder = Folder::new("report");
+    folder.write("scene.json", SCENE);
+    let flags = ["show", "scene.json", "--out", "deep/a.png", "--report", "a.json", "--depth", "d.png"];
+    let run = folder.zga(&flags);
+    assert_eq!(run.code(), Some(0), "{}", run.err());
+    let report: Value = serde_json::from_slice(&folder.read("a.json")).expect("JSON");
+    assert_eq!(report["size"], serde_json::json!([64, 48]));
+    assert_eq!((&report["hidden_surface"], &report["fidelity"]), (&"zbuffer".into(), &"functional".into()));
+    assert!(report["frame_hash"].as_str().is_some_and(|hash| hash.starts_with("xxh3:") && hash.len() == 21));
+    assert!(run.out().contains(report["frame_hash"].as_str().expect("text")));
+    assert!(report["host_ms"].as_f64().is_some_and(|ms| ms > 0.0));
+    assert_eq!(report["effects"]["called"], serde_json::json!(["depth", "decal"]));
+    let powered = report["effects"]["powered"].as_array().expect("a list");
+    assert!(powered.contains(&"geometry".into()) && !powered.contains(&"texture".into()));
+    assert_eq!(report["counters"]["geometry.primitives"], 3);
+    assert_eq!(report["counters"]["frontend.packets"].as_u64().map(|packets| packets > 5), Some(true));
+    let cycles = report["cycles"].as_object().expect("an object");
+    let sum: u64 = cycles.iter().filter(|(unit, _)| *unit != "total").filter_map(|(_, clocks)| clocks.as_u64()).sum();
+    assert_eq!(cycles["total"].as_u64(), Some(sum));
+    assert!(folder.read("deep/a.png").starts_with(b"\x89PNG") && folder.read("d.png").starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn show_hash_is_the_same_for_threads_kernels_and_sizes_of_files() {
+    let folder = Folder::new("threads");
+    let hash = |flags: &[&str]| {
+        let run = folder.zga(&[&["show", "solids.json", "--out", "a.png"], flags].concat());
+        assert_eq!(run.code(), Some(0), "{}", run.err());
+        run.out()
+    };
+    folder.write("solids.json", SCENE);
+    let first = hash(&["--threads", "1"]);
+    assert_eq!(hash(&["--threads", "3"]), first);
+    assert_eq!(hash(&["--kernel", "specification"]), first);
+    assert_ne!(hash(&["--size", "65x48"]), first);
+    assert_ne!(hash(&["--no-decals"]), first);
+}
+
+#[test]
+fn show_frames_go_to_a_folder_with_numbers() {
+    let folder = Folder::new("frames");
+    let run = folder.zga(&["show", "gouraud", "--headless", "--out", "many", "--frames", "2", "--size", "80x60"]);
+    assert_eq!(run.code(), Some(0), "{}", run.err());
+    assert!(folder.read("many/gouraud-0000.png").starts_with(b"\x89PNG"));
+    assert!(folder.read("many/gouraud-0001.png").starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn show_effects_beyond_the_card_are_told_and_drawn_without() {
+    let folder = Folder::new("effects");
+    let lit = SCENE.replacen('{', r#"{"lights": [{"type": "directional", "direction": [0,0,-1]}],"#, 1);
+    folder.write("lit.json", &lit);
+    let run = folder.zga(&["show", "lit.json", "--out", "a.png"]);
+    assert_eq!(run.code(), Some(0), "{}", run.err());
+    assert!(run.err().contains("this card has no unit yet for lights[0]"), "{}", run.err());
+}
+
+#[test]
+fn capture_equal_different_and_missing_goldens() {
+    let folder = Folder::new("capture");
+    folder.write("scene.json", SCENE);
+    let capture = |flags: &[&str]| folder.zga(&[&["capture", "scene.json", "--golden", "g"], flags].concat());
+    let missing = capture(&[]);
+    assert_eq!(missing.code(), Some(2));
+    assert!(missing.err().contains("--update writes it"), "{}", missing.err());
+    assert_eq!(capture(&["--update"]).code(), Some(0));
+    let equal = capture(&[]);
+    assert_eq!((equal.code(), equal.out().trim_end().ends_with("equal")), (Some(0), true));
+
+    folder.write("scene.json", &SCENE.replace("[0,0,255,255]", "[0,1,255,255]"));
+    let different = capture(&[]);
+    assert_eq!(different.code(), Some(1));
+    // The blue triangle's first pixel: row 4, where its left edge begins.
+    assert!(different.out().contains("the first at (4, 4): #0000ff expected, #0001ff found"), "{}", different.out());
+    assert!(folder.read("g/scene.difference.png").starts_with(b"\x89PNG"));
+    assert_eq!(capture(&["--size", "32x48"]).code(), Some(1));
+    std::fs::write(folder.0.join("g/scene.png"), "no picture").expect("written");
+    let damaged = capture(&[]);
+    assert_eq!(damaged.code(), Some(2));
+    assert!(damaged.err().contains("scene.png: is not a picture"), "{}", damaged.err());
+}
+
+#[test]
+fn pixel_tells_every_fragment_with_its_verdict() {
+    let folder = Folder::new("pixel");
+    folder.write("scene.json", SCENE);
+    let run = folder.zga(&["pixel", "scene.json", "20", "24"]);
+    assert_eq!(run.code(), Some(0), "{}", run.err());
+    let lines: Vec<String> =
+        run.out().lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ")).collect();
+    // Depths of 16 bits: 0.5 is 32768 and 0.25 is 16384; a decal of slope 8 on 64 pixels moves by 8 / 128 = 1/16.
+    let expected = [
+        "0 (clear) clear 65535 0 written #101020",
+        "1 draw[0] 7 0 triangle 32768 less 65535 drawn #0000ff",
+        "2 draw[1] 8 0 triangle 16384 less 32768 drawn #ff0000",
+        "3 draw[2].decal.draw[0] 9 0 line 12288 less 16384 drawn #ffffff",
+    ];
+    assert_eq!(lines[3..7], expected);
+    assert_eq!(lines[8], "Shown #ffffff, depth 12288 of 65535");
+    assert_eq!(folder.zga(&["pixel", "scene.json", "64", "24"]).code(), Some(2));
+}
+
+#[test]
+fn trace_replays_equal_and_damage_is_told() {
+    let folder = Folder::new("trace");
+    folder.write("scene.json", SCENE);
+    let record = folder.zga(&["trace", "record", "t.zga", "scene.json"]);
+    assert_eq!(record.code(), Some(0), "{}", record.err());
+    let replay = folder.zga(&["trace", "replay", "t.zga", "--threads", "1"]);
+    assert_eq!(replay.code(), Some(0), "{}", replay.err());
+    let hash = record.out().split_whitespace().find(|word| word.starts_with("xxh3:")).expect("a hash").to_owned();
+    assert!(replay.out().contains(&format!("64 x 48  {hash}  equal")), "{}", replay.out());
+    let info = folder.zga(&["trace", "info", "t.zga"]);
+    assert!(info.out().contains(&hash), "{}", info.out());
+
+    let whole = folder.read("t.zga");
+    let mut flipped = whole.clone();
+    flipped[whole.len() / 2] ^= 1;
+    for (bytes, reason) in
+        [(&flipped[..], "damaged"), (&whole[..whole.len() - 1], "cut short"), (b"x", "not a ZGA trace")]
+    {
+        std::fs::write(folder.0.join("bad.zga"), bytes).expect("written");
+        for command in ["replay", "info"] {
+            let run = folder.zga(&["trace", command, "bad.zga"]);
+            assert_eq!(run.code(), Some(2));
+            assert!(run.err().contains("bad.zga: ") && run.err().contains(reason), "{}", run.err());
+        }
+    }
+}
+
+#[test]
+fn bench_prints_the_line_of_the_harness() {
+    let folder = Folder::new("bench");
+    let run =
+        folder.zga(&["bench", "--scene", "3", "--size", "64x64", "--secs", "0", "--peer", "zga-1", "--dump", "d"]);
+    assert_eq!(run.code(), Some(0), "{}", run.err());
+    let out = run.out();
+    let fields: Vec<&str> = out.trim_end().split(',').collect();
+    assert_eq!((fields.len(), &fields[..4], fields[10]), (11, &["zga-1", "S3", "64x64", "1"][..], "128"));
+    assert!(fields[4..10].iter().all(|field| field.parse::<f64>().is_ok_and(|number| number > 0.0)), "{out}");
+    let dump = folder.read("d");
+    assert_eq!((&dump[..11], dump.len()), (&b"RGBA 64 64\n"[..], 11 + 4 * 64 * 64));
+}
+
+#[test]
+fn bad_scenes_name_file_and_field() {
+    let folder = Folder::new("bad");
+    let fault = |name: &str, text: &str| {
+        folder.write(name, text);
+        let run = folder.zga(&["show", name, "--out", "a.png"]);
+        assert_eq!(run.code(), Some(2), "{name}");
+        assert!(!Path::new(&folder.0.join("a.png")).exists());
+        run.err()
+    };
+    assert!(fault("a.json", "{").contains("a.json:1:"));
+    let value = fault("b.json", &SCENE.replace("[16, 16, 32, 255]", "[16, 16, 32, 256]"));
+    assert!(value.contains("b.json: background[3]: expected"), "{value}");
+    let path = fault("c.json", &SCENE.replace("\"depth_bits\": 16", "\"hidden_surface\": \"tile\""));
+    assert!(path.contains("c.json: card.hidden_surface: tile is not possible: this card has"), "{path}");
+    let mesh = fault("d.obj", "v 0 0 0\nf 1 2 3\n");
+    assert!(mesh.contains("d.obj: line 2"), "{mesh}");
+}
