@@ -27,7 +27,7 @@ use std::sync::{Mutex, PoisonError};
 use zga_abi::format::Topology;
 use zga_abi::{Counter, Effects};
 use zga_firmware::Stopped;
-use zga_firmware::checked::{Clear, Draw, DrawState, Target};
+use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Target};
 
 /// Primitives that are assembled before they are drawn, at most; bins that fill up end a batch sooner.
 const BATCH: u32 = 1 << 18;
@@ -199,7 +199,7 @@ impl Pipeline {
                 (first, counts) = self.workers.assemble(self.threads, &assembler, &setting, size, first..primitives);
                 tiles = self.draw_bins(memory, &target, &setting);
             } else {
-                (first, counts) = list(&mut self.list, &assembler, first..primitives);
+                (first, counts) = list(&mut self.list, &assembler, setting.scissor, first..primitives);
                 if let Some(probe) = probe.as_deref_mut() {
                     let (_, depth) = surfaces(memory, &target);
                     let at = probe.y as usize * setting.depth_pitch + probe.x as usize;
@@ -216,7 +216,7 @@ impl Pipeline {
             }
         }
         if let Some(probe) = probe {
-            probe.draw += 1;
+            probe.draw = probe.draw.wrapping_add(1);
         }
         Ok(())
     }
@@ -267,9 +267,9 @@ fn setting(target: &Target, state: &DrawState) -> Setting {
 }
 
 /// Assembles primitives into a plain list.
-fn list(list: &mut List, assembler: &Assembler<'_>, range: Range<u32>) -> (u32, GeometryCounts) {
+fn list(list: &mut List, assembler: &Assembler<'_>, scissor: Rectangle, range: Range<u32>) -> (u32, GeometryCounts) {
     let mut counts = GeometryCounts::default();
-    list.shapes.clear();
+    list.reset(scissor);
     let first = assembler.run(range, list, &mut counts);
     (first, counts)
 }

@@ -148,12 +148,14 @@ impl FifoFetch {
         self.taken.wrapping_sub(self.packet.len() as u32)
     }
 
-    /// Takes all words there are and throws them away; returns how many.
+    /// Takes all words there are and throws them away; returns how many. They do not count as taken:
+    /// how many a halted FIFO still gets hold of, and how many it refuses, is a matter of host time.
     pub(crate) fn discard(&mut self, port: &FifoPort) -> usize {
-        let mut words = 0;
+        let (mut words, taken) = (0, self.taken);
         while self.take(port).is_some() {
             words += 1;
         }
+        self.taken = taken;
         words
     }
 

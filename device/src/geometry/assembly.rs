@@ -12,6 +12,7 @@ use super::transform::Transform;
 use super::triangle::Triangle;
 use std::ops::Range;
 use zga_abi::format::{DepthFormat, Topology};
+use zga_firmware::checked::Rectangle;
 
 /// A point: its pixel and depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -239,22 +240,47 @@ impl Shape {
 pub struct List {
     /// The primitives.
     pub shapes: Vec<(Shape, u32)>,
+    /// Pixels that may change: first column and row, first beyond.
+    area: [[i32; 2]; 2],
+    /// Pixels of the area that the primitives' bounding boxes cover.
+    pixels: u64,
 }
 
 /// Most primitives of a [`List`] before it wants to be drawn.
 const LIST_LIMIT: usize = 1 << 16;
+/// Most pixels to be looked at before it wants to be drawn: a reset waits no longer than they take.
+const PIXEL_LIMIT: u64 = 1 << 24;
+
+impl List {
+    /// Empties the list, for a draw that can change the pixels of `scissor`.
+    pub fn reset(&mut self, scissor: Rectangle) {
+        self.shapes.clear();
+        self.pixels = 0;
+        self.area = [[scissor.x, scissor.y], [scissor.right, scissor.bottom]].map(|corner| corner.map(|c| c as i32));
+    }
+
+    fn push(&mut self, shape: Shape, vertices: &[ScreenVertex], number: u32) {
+        let extent = |c: usize, of: fn(&ScreenVertex) -> i32| {
+            let pixels = || vertices.iter().map(|v| of(v) >> 8);
+            let (first, last) = (pixels().min().unwrap_or(0), pixels().max().unwrap_or(0));
+            ((last + 1).min(self.area[1][c]) - first.max(self.area[0][c])).max(0) as u64
+        };
+        self.pixels += extent(0, |v| v.x) * extent(1, |v| v.y);
+        self.shapes.push((shape, number));
+    }
+}
 
 impl Sink for List {
     fn triangle(&mut self, triangle: &Triangle, _columns: [i32; 2], vertices: &[ScreenVertex; 3], number: u32) {
-        self.shapes.push((Shape::Triangle(*triangle, *vertices), number));
+        self.push(Shape::Triangle(*triangle, *vertices), vertices, number);
     }
     fn line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: u32) {
-        self.shapes.push((Shape::Line(*line, *vertices), number));
+        self.push(Shape::Line(*line, *vertices), vertices, number);
     }
     fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32) {
-        self.shapes.push((Shape::Point(*point, *vertex), number));
+        self.push(Shape::Point(*point, *vertex), &[*vertex], number);
     }
     fn full(&self) -> bool {
-        self.shapes.len() >= LIST_LIMIT
+        self.shapes.len() >= LIST_LIMIT || self.pixels >= PIXEL_LIMIT
     }
 }

@@ -88,13 +88,14 @@ impl Transform {
                 return None;
             }
             let depth = match &self.depth {
-                None => p[2] * reciprocal_w * self.scale[2] + self.offset[2],
+                None => p[2] / p[3] * self.scale[2] + self.offset[2],
                 Some(matrix) => {
                     let d = apply(matrix, x, y, z);
                     (d[2] / d[3]).clamp(0.0, 1.0) * self.scale[2] + self.offset[2]
                 }
             };
-            let at = |k: usize| p[k] * reciprocal_w * self.scale[k] + self.offset[k];
+            // Quotients, not products with 1 / w: those round twice, and a tie at the snap would go either way.
+            let at = |k: usize| p[k] / p[3] * self.scale[k] + self.offset[k];
             ([at(0), at(1)], reciprocal_w, depth)
         };
         // A NaN fails every comparison.
@@ -145,7 +146,7 @@ impl Transform {
         let reciprocal_w = 1.0 / w;
         // Rounding in the clip can leave a vertex a trifle outside; the grid is clamped like depth.
         let screen = [0, 1].map(|k| {
-            let at = [x, y][k] * reciprocal_w * self.scale[k] + self.offset[k];
+            let at = [x, y][k] / w * self.scale[k] + self.offset[k];
             at.clamp(self.centre[k] - GUARD_BAND, self.centre[k] + GUARD_BAND)
         });
         let depth = (v.depth[0] / v.depth[1]).clamp(0.0, 1.0) * self.scale[2] + self.offset[2];

@@ -86,7 +86,8 @@ pub(crate) fn save(board: &mut Board) -> State {
         interrupt_enable: backplane.interrupts.enable(),
         ring: Pointers::new(ring.base, ring.size, ring.put, ring.get),
         ring_halted: backplane.ring.halted(),
-        ring_rung: backplane.ring.rung() || frontend.ring.pending(),
+        // A doorbell over an empty ring or a halted one asks for nothing, heard or not.
+        ring_rung: (backplane.ring.rung() && backplane.ring.waits()) || frontend.ring.pending(),
         fifo: frontend.fifo.save(&backplane.fifo),
         fifo_halted: backplane.fifo.halted(),
         processor: frontend.processor.state(),

@@ -103,7 +103,8 @@ impl Scanout {
 
     /// A vertical blank: the frame shown goes out, is counted, and the interrupt is raised.
     pub(crate) fn blank(&mut self, backplane: &Backplane, memory: &mut VideoMemory, account: &mut Account) {
-        self.blanks += 1;
+        // A snapshot can hold any number; at the end of all numbers frames no longer rise.
+        self.blanks = self.blanks.saturating_add(1);
         let count = backplane.registers.get(Reg::FrameCount);
         if let Some(surface) = shown(backplane, memory) {
             charge(account, &surface);

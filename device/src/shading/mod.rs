@@ -3,6 +3,7 @@
 //! | file | part |
 //! | --- | --- |
 //! | [`plane`] | colour interpolators: flat, affine (integer), perspective-correct (f32) |
+//! | [`rare`] | the same for lines' ends and for slivers in perspective, pixel by pixel |
 //! | [`resolve`] | runs of visible pixels become frame buffer pixels |
 //!
 //! Clocks: 1 for each interpolated pixel (four interpolators side by side); flat colours cost none.
@@ -10,4 +11,5 @@
 //! of a Gouraud draw. That the host shades only what stays visible shows in host time alone.
 
 pub mod plane;
+pub mod rare;
 pub mod resolve;

@@ -7,7 +7,15 @@
 //!
 //! Perspective-correct colours divide a plane of c / w by a plane of 1 / w, in f32, one division a
 //! pixel. Both kinds end in a clamp to the range of the primitive's own vertices.
+//!
+//! A line can draw a pixel whose centre lies up to 1/2 pixel beyond an end; the pixel has the end's
+//! colour then. An affine plane sees to that by its clamp, as long as the overshoot fits its 32 bits;
+//! short lines and perspective-correct ones (1 / w may change its sign there) limit the place instead.
+//! Slivers whose planes are so steep that f32 would lose levels have planes in f64 ([`super::rare`]).
+//!
+//! All are made from the vertices in (y, x) order, so colours do not depend on the order they came in.
 
+use super::rare::{LineColours, PrecisePlane};
 use crate::geometry::ratio::round_ratio;
 use crate::geometry::{CENTRE, PIXEL, ScreenVertex};
 
@@ -20,6 +28,10 @@ pub enum ColourPlane {
     Affine(AffinePlane),
     /// Perspective-correct.
     Perspective(PerspectivePlane),
+    /// From end to end of a line, no farther.
+    Line(LineColours),
+    /// Perspective-correct, where f32 would cancel.
+    Precise(PrecisePlane),
 }
 
 /// Four integer planes: R, G, B, A.
@@ -56,6 +68,9 @@ pub struct PerspectivePlane {
     pub(super) maximum: [f32; 4],
 }
 
+/// Affine lines shorter than this, in u, can overshoot an end by more than an affine plane holds.
+const SHORT: i64 = 128;
+
 /// What a primitive's colours are made from, once it turns out to be seen.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ColourSource {
@@ -86,7 +101,33 @@ impl ColourSource {
         self.colour[0]
     }
 
-    fn channel(&self, vertex: usize, k: usize) -> u8 {
+    /// 1 / w of vertex `n` relative to vertex 0: keeps planes in range for any w.
+    pub(super) fn relative_w(&self, n: usize) -> f64 {
+        f64::from(self.reciprocal_w[n]) / f64::from(self.reciprocal_w[0])
+    }
+
+    /// Pixels from vertex 0 to the farthest vertex, along x (0) or y (1), and the anchor's own.
+    fn extent(&self, axis: usize) -> f64 {
+        let far = |n: usize| (self.position[n][axis] - self.position[0][axis]).abs();
+        f64::from(far(1).max(far(2)) / PIXEL + 1)
+    }
+
+    /// The same with its vertices in the given order.
+    fn ordered(&self, order: [usize; 3]) -> ColourSource {
+        ColourSource {
+            position: order.map(|n| self.position[n]),
+            colour: order.map(|n| self.colour[n]),
+            reciprocal_w: order.map(|n| self.reciprocal_w[n]),
+        }
+    }
+
+    /// Row, then column: what vertices are ordered by.
+    fn place(&self, vertex: usize) -> [i32; 2] {
+        let [x, y] = self.position[vertex];
+        [y, x]
+    }
+
+    pub(super) fn channel(&self, vertex: usize, k: usize) -> u8 {
         self.colour[vertex].to_le_bytes()[k]
     }
 
@@ -98,12 +139,12 @@ impl ColourSource {
     }
 
     /// From vertex 0 to the centre of its pixel, u.
-    fn offset_to_centre(&self) -> [i32; 2] {
+    pub(super) fn offset_to_centre(&self) -> [i32; 2] {
         self.position[0].map(|c| CENTRE - (c & (PIXEL - 1)))
     }
 
     /// The pixel of vertex 0.
-    fn anchor(&self) -> [i32; 2] {
+    pub(super) fn anchor(&self) -> [i32; 2] {
         self.position[0].map(|c| c >> 8)
     }
 }
@@ -126,6 +167,9 @@ impl ColourPlane {
         if interpolation == Interpolation::Flat || (v.colour[0] == v.colour[1] && v.colour[0] == v.colour[2]) {
             return ColourPlane::Flat(v.flat());
         }
+        let mut order = [0, 1, 2];
+        order.sort_unstable_by_key(|&n| v.place(n));
+        let v = &v.ordered(order);
         let ([x1, y1], [x2, y2]) = (v.edge(1), v.edge(2));
         let area = x1 * y2 - y1 * x2;
         let sign = area.signum();
@@ -137,7 +181,13 @@ impl ColourPlane {
                 let per_u = inverse * sign as f64;
                 [(c1 * y2 as f64 - c2 * y1 as f64) * per_u, (x1 as f64 * c2 - x2 as f64 * c1) * per_u]
             };
-            return ColourPlane::Perspective(PerspectivePlane::new(v, slopes));
+            let plane = PrecisePlane::new(v, slopes);
+            let extent = [v.extent(0), v.extent(1)];
+            return if plane.cancels(extent) {
+                ColourPlane::Precise(plane)
+            } else {
+                ColourPlane::Perspective(plane.rounded())
+            };
         }
         let slopes = |c: [i64; 3]| {
             let (c1, c2) = (c[1] - c[0], c[2] - c[0]);
@@ -152,17 +202,17 @@ impl ColourPlane {
         if interpolation == Interpolation::Flat || v.colour[0] == v.colour[1] {
             return ColourPlane::Flat(v.flat());
         }
+        let v = &v.ordered(if v.place(1) < v.place(0) { [1, 0, 0] } else { [0, 1, 1] });
         let [dx, dy] = v.edge(1);
         let x_major = dx.abs() >= dy.abs();
         let length = if x_major { dx } else { dy };
-        let (sign, inverse) = (length.signum(), 1.0 / length.abs() as f64);
         if interpolation == Interpolation::Perspective && v.reciprocal_w[0] != v.reciprocal_w[1] {
-            let slopes = |c: [f64; 3]| {
-                let slope = (c[1] - c[0]) * (inverse * sign as f64);
-                if x_major { [slope, 0.0] } else { [0.0, slope] }
-            };
-            return ColourPlane::Perspective(PerspectivePlane::new(v, slopes));
+            return ColourPlane::Line(LineColours::new(v, x_major, length, v.reciprocal_w[1] / v.reciprocal_w[0]));
         }
+        if length.abs() < SHORT {
+            return ColourPlane::Line(LineColours::new(v, x_major, length, 1.0));
+        }
+        let (sign, inverse) = (length.signum(), 1.0 / length.abs() as f64);
         let slopes = |c: [i64; 3]| {
             let rise = (c[1] - c[0]) * sign;
             if x_major { [rise, 0] } else { [0, rise] }
@@ -177,6 +227,8 @@ impl ColourPlane {
             ColourPlane::Flat(colour) => *colour,
             ColourPlane::Affine(plane) => plane.colour(plane.value(x, y)),
             ColourPlane::Perspective(plane) => plane.colour(x, y),
+            ColourPlane::Line(line) => line.colour(x, y),
+            ColourPlane::Precise(plane) => plane.colour(x, y),
         }
     }
 }
@@ -240,35 +292,6 @@ impl AffinePlane {
 }
 
 impl PerspectivePlane {
-    /// `slopes` gives a quantity's change for one u right and down.
-    fn new(v: &ColourSource, slopes: impl Fn([f64; 3]) -> [f64; 2]) -> PerspectivePlane {
-        let to_centre = v.offset_to_centre().map(f64::from);
-        let mut plane = PerspectivePlane {
-            reference: [0.0; 5],
-            dx: [0.0; 5],
-            dy: [0.0; 5],
-            anchor: v.anchor(),
-            minimum: [0.0; 4],
-            maximum: [0.0; 4],
-        };
-        // 1 / w relative to the first vertex keeps the planes in range for any w.
-        let scale = 1.0 / f64::from(v.reciprocal_w[0]);
-        let w = [0, 1, 2].map(|n| f64::from(v.reciprocal_w[n]) * scale);
-        for k in 0..5 {
-            let quantity = if k == 4 { w } else { [0, 1, 2].map(|n| f64::from(v.channel(n, k)) * w[n]) };
-            let [a, b] = slopes(quantity);
-            plane.reference[k] = (quantity[0] + a * to_centre[0] + b * to_centre[1]) as f32;
-            plane.dx[k] = (a * f64::from(PIXEL)) as f32;
-            plane.dy[k] = (b * f64::from(PIXEL)) as f32;
-            if k < 4 {
-                let c = [0, 1, 2].map(|n| f32::from(v.channel(n, k)));
-                plane.minimum[k] = c[0].min(c[1]).min(c[2]);
-                plane.maximum[k] = c[0].max(c[1]).max(c[2]);
-            }
-        }
-        plane
-    }
-
     /// Colour of pixel (`x`, `y`).
     #[must_use]
     #[inline(always)]

@@ -108,6 +108,8 @@ pub fn resolve_row<S: Simd>(
                 ColourPlane::Flat(colour) => u32x16::splat(simd, *colour),
                 ColourPlane::Affine(plane) => affine(simd, plane, x as i32, y as i32),
                 ColourPlane::Perspective(plane) => perspective(simd, plane, x as i32, y as i32),
+                ColourPlane::Line(line) => one_by_one(simd, |lane| line.colour(x as i32 + lane, y as i32)),
+                ColourPlane::Precise(plane) => one_by_one(simd, |lane| plane.colour(x as i32 + lane, y as i32)),
             };
             colours = mine.select(shaded, colours);
         }
@@ -115,17 +117,23 @@ pub fn resolve_row<S: Simd>(
     }
 }
 
+/// Colours of 16 pixels without the help of lanes.
+#[inline(always)]
+fn one_by_one<S: Simd>(simd: S, colour: impl Fn(i32) -> u32) -> u32x16<S> {
+    u32x16::from_slice(simd, &LANE.map(colour))
+}
+
 /// Colours of 16 pixels from (`x`, `y`) on.
 #[inline(always)]
 fn affine<S: Simd>(simd: S, plane: &AffinePlane, x: i32, y: i32) -> u32x16<S> {
     let lane = i32x16::from_slice(simd, &LANE);
-    let first = plane.value(x, y);
-    let channel = |k: usize| {
-        let value = lane * plane.dx[k] + i32x16::splat(simd, first[k]);
-        (value >> AffinePlane::FRACTION).max(plane.minimum[k]).min(plane.maximum[k])
-    };
-    let (r, g, b, a) = (channel(0), channel(1), channel(2), channel(3));
-    (r | (g << 8_u32) | (b << 16_u32) | (a << 24_u32)).bitcast()
+    let mut colours = i32x16::splat(simd, 0);
+    for (k, first) in plane.value(x, y).into_iter().enumerate() {
+        let value = lane * plane.dx[k] + i32x16::splat(simd, first);
+        let level = (value >> AffinePlane::FRACTION).max(plane.minimum[k]).min(plane.maximum[k]);
+        colours |= level << (8 * k as u32);
+    }
+    colours.bitcast()
 }
 
 /// Colours of 16 pixels from (`x`, `y`) on.
@@ -133,12 +141,13 @@ fn affine<S: Simd>(simd: S, plane: &AffinePlane, x: i32, y: i32) -> u32x16<S> {
 fn perspective<S: Simd>(simd: S, plane: &PerspectivePlane, x: i32, y: i32) -> u32x16<S> {
     let i: f32x16<S> = (i32x16::from_slice(simd, &LANE) + (x - plane.anchor[0])).to_float();
     let j = (y - plane.anchor[1]) as f32;
-    let value = |k: usize| i * plane.dx[k] + plane.reference[k] + j * plane.dy[k];
-    let divisor = value(4);
-    let channel = |k: usize| -> i32x16<S> {
-        let colour = (value(k) / divisor).max_precise(plane.minimum[k]).min_precise(plane.maximum[k]);
-        (colour + 0.5).to_int()
-    };
-    let (r, g, b, a) = (channel(0), channel(1), channel(2), channel(3));
-    (r | (g << 8_u32) | (b << 16_u32) | (a << 24_u32)).bitcast()
+    let divisor = i * plane.dx[4] + plane.reference[4] + j * plane.dy[4];
+    let mut colours = i32x16::splat(simd, 0);
+    for k in 0..4 {
+        let value = i * plane.dx[k] + plane.reference[k] + j * plane.dy[k];
+        let level = (value / divisor).max_precise(plane.minimum[k]).min_precise(plane.maximum[k]);
+        let level: i32x16<S> = (level + 0.5).to_int();
+        colours |= level << (8 * k as u32);
+    }
+    colours.bitcast()
 }

@@ -103,10 +103,10 @@ impl Setting {
         match self.test {
             None => self.draw_bin_with::<S, { kernel::NO_DEPTH }>(simd, bin, first, DepthTest::ALWAYS, tile),
             Some(test) if below(self.format) != 32 => {
-                self.draw_bin_with::<S, { kernel::WIDE }>(simd, bin, first, test, tile)
+                self.draw_bin_with::<S, { kernel::WIDE }>(simd, bin, first, test, tile);
             }
             Some(test) if test == DepthTest::LESS => {
-                self.draw_bin_with::<S, { kernel::LESS }>(simd, bin, first, test, tile)
+                self.draw_bin_with::<S, { kernel::LESS }>(simd, bin, first, test, tile);
             }
             Some(test) => self.draw_bin_with::<S, { kernel::GENERAL }>(simd, bin, first, test, tile),
         }

@@ -20,8 +20,14 @@ const SHIFT: u32 = TILE.trailing_zeros();
 /// Bytes in all bins after which they want to be drawn.
 const LIMIT: usize = 64 << 20;
 
+/// Pixels in all bounding boxes after which they want to be drawn: a reset waits no longer than they take.
+const PIXEL_LIMIT: u64 = 1 << 28;
+
 /// A primitive, and what its colours are made from once it is seen.
 pub type Entry<T> = (T, ColourSource);
+
+/// Bytes of room that emptied bins keep for the next draw; beyond it all of it is given back.
+const KEPT: usize = 4 * LIMIT;
 
 /// Primitives of one tile; a draw has one kind of them only.
 #[derive(Debug, Default)]
@@ -32,6 +38,8 @@ pub struct Bin {
     pub lines: Vec<Entry<Line>>,
     /// Points.
     pub points: Vec<Entry<Point>>,
+    /// Bytes of room when it was emptied last.
+    room: usize,
 }
 
 impl Bin {
@@ -56,10 +64,15 @@ impl Bin {
         triangle.or_else(line).or_else(|| self.points.get(index).map(|(_, colours)| colours))
     }
 
-    fn clear(&mut self) {
+    /// Empties it; returns by how many bytes its room has grown.
+    fn clear(&mut self) -> usize {
         self.triangles.clear();
         self.lines.clear();
         self.points.clear();
+        let room = self.triangles.capacity() * size_of::<Entry<Triangle>>()
+            + self.lines.capacity() * size_of::<Entry<Line>>()
+            + self.points.capacity() * size_of::<Entry<Point>>();
+        room - std::mem::replace(&mut self.room, room)
     }
 }
 
@@ -71,13 +84,20 @@ pub struct Bins {
     columns: usize,
     area: [i32; 4],
     bytes: usize,
+    pixels: u64,
+    /// Bytes of room in all bins, those that went with a larger target counted in.
+    room: usize,
 }
 
 impl Bins {
     /// Empties the bins for a target of `width` x `height` pixels of which `scissor` may change.
     pub fn reset(&mut self, width: u32, height: u32, scissor: Rectangle) {
         for tile in self.touched.drain(..) {
-            self.tiles[tile as usize].clear();
+            self.room += self.tiles[tile as usize].clear();
+        }
+        if self.room > KEPT {
+            self.tiles.clear();
+            self.room = 0;
         }
         self.columns = (width as usize).div_ceil(TILE);
         let count = self.columns * (height as usize).div_ceil(TILE);
@@ -86,6 +106,7 @@ impl Bins {
         }
         self.area = [scissor.x, scissor.y, scissor.right, scissor.bottom].map(|c| c as i32);
         self.bytes = 0;
+        self.pixels = 0;
     }
 
     /// Primitives that can touch tile (`column`, `row`).
@@ -123,6 +144,7 @@ impl Sink for Bins {
         if left >= right || top >= bottom {
             return;
         }
+        self.pixels += (right - left) as u64 * (bottom - top) as u64;
         let colours = ColourSource::new(vertices);
         let (columns, rows) = ([left >> SHIFT, (right - 1) >> SHIFT], [top >> SHIFT, (bottom - 1) >> SHIFT]);
         if columns[0] == columns[1] {
@@ -181,6 +203,6 @@ impl Sink for Bins {
     }
 
     fn full(&self) -> bool {
-        self.bytes >= LIMIT
+        self.bytes >= LIMIT || self.pixels >= PIXEL_LIMIT
     }
 }

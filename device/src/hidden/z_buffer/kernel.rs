@@ -10,7 +10,7 @@
 use super::DepthTest;
 use super::tile::{TILE, Tile};
 use crate::geometry::plane::DepthPlane;
-use crate::geometry::triangle::{Edge, Triangle, WALK};
+use crate::geometry::triangle::{Triangle, WALK};
 use fearless_simd::prelude::*;
 use fearless_simd::{i32x16, mask32x16, u32x16};
 use std::ops::Range;
@@ -54,6 +54,13 @@ impl<S: Simd> Steps<S> {
         let carried = (base + self.low).simd_lt(base);
         let high = self.high + i32x16::splat(simd, (value >> 32) as i32);
         carried.select(high + 1, high)
+    }
+
+    /// Columns of an edge on [`LANES`] rows, counted from column `x`: the integer part of a walk lies in
+    /// the upper half of its 64 bits.
+    #[inline(always)]
+    fn columns(&self, simd: S, walk: i64, x: i32) -> i32x16<S> {
+        (self.upper(simd, walk) >> (WALK - 32)) - x
     }
 }
 
@@ -153,22 +160,22 @@ struct Rows {
 impl<S: Simd> Walks<S> {
     #[inline(always)]
     fn new(simd: S, t: &Triangle) -> Self {
-        let steps = |edge: Edge| Steps::new(simd, edge.step);
-        Walks { long: steps(t.long), upper: steps(t.short[0]), lower: steps(t.short[1]) }
+        Walks {
+            long: Steps::new(simd, t.long.step),
+            upper: Steps::new(simd, t.short[0].step),
+            lower: Steps::new(simd, t.short[1].step),
+        }
     }
 
     /// Rows `y..y + count`.
     #[inline(always)]
     fn rows(&self, simd: S, t: &Triangle, y: i32, count: i32, tile: &Tile<'_>) -> Rows {
-        // The integer part of a walk lies in the upper half of its 64 bits.
-        let columns = |steps: &Steps<S>, walk: i64| (steps.upper(simd, walk) >> (WALK - 32)) - tile.x;
         let lane = u32x16::from_slice(simd, &LANE);
         let in_upper = lane.simd_lt((t.rows[1] - y).clamp(0, LANES as i32) as u32);
-        let long = columns(&self.long, t.long.walk(y - t.rows[0]));
-        let short = in_upper.select(
-            columns(&self.upper, t.short[0].walk(y - t.rows[0])),
-            columns(&self.lower, t.short[1].walk(y - t.rows[1])),
-        );
+        let long = self.long.columns(simd, t.long.walk(y - t.rows[0]), tile.x);
+        let upper = self.upper.columns(simd, t.short[0].walk(y - t.rows[0]), tile.x);
+        let lower = self.lower.columns(simd, t.short[1].walk(y - t.rows[1]), tile.x);
+        let short = in_upper.select(upper, lower);
         let (least, greatest) = (tile.columns[0] - tile.x, tile.columns[1] - tile.x);
         let start = long.min(short);
         let from = start.max(least);

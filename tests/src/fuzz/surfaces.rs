@@ -1,0 +1,146 @@
+//! Targets and rectangles that fit into video memory: most of them ordinary, some as odd as can be.
+
+use super::packets::Composer;
+use zga_abi::packet::Opcode;
+
+/// A render target as its registers describe it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels.
+    pub width: u32,
+    /// Pixels.
+    pub height: u32,
+    /// First byte of the frame buffer.
+    pub base: u32,
+    /// Bytes from a row to the next.
+    pub pitch: u32,
+    /// COLOUR_FORMAT.
+    pub format: u32,
+    /// DEPTH_BASE and DEPTH_PITCH, if there is a Z buffer.
+    pub depth: Option<[u32; 2]>,
+    /// DEPTH_FORMAT.
+    pub depth_format: u32,
+    /// Farthest depth.
+    pub maximum_depth: u32,
+}
+
+impl Picture {
+    /// TARGET_SIZE to DEPTH_FORMAT.
+    #[must_use]
+    pub fn registers(&self) -> [u32; 7] {
+        let [depth_base, depth_pitch] = self.depth.unwrap_or_default();
+        let size = self.width | (self.height << 16);
+        [size, self.base, self.pitch, self.format, depth_base, depth_pitch, self.depth_format]
+    }
+}
+
+/// A rectangle of a surface.
+#[derive(Clone, Copy)]
+struct Area {
+    base: u32,
+    pitch: u32,
+    x: u32,
+    y: u32,
+    width: u32,
+    height: u32,
+}
+
+impl Composer<'_, '_> {
+    /// A render target.
+    pub(super) fn picture(&mut self) -> Picture {
+        let bytes = &mut *self.bytes;
+        let [width, height] = match bytes.byte() % 16 {
+            0 => [1, 1],
+            1..=3 => [1 + bytes.below(8), 1 + bytes.below(8)],
+            4 => [16384 - bytes.below(3), 1 + bytes.below(3)],
+            5 => [1 + bytes.below(16), 4096 - bytes.below(3)],
+            6 | 7 => [256 + bytes.below(128), 200 + bytes.below(100)],
+            _ => [1 + bytes.below(128), 1 + bytes.below(128)],
+        };
+        let format = bytes.below(3);
+        let pixel = if format == 2 { 2 } else { 4 };
+        let pitch = (width * pixel).next_multiple_of(64) + 64 * bytes.below(256).saturating_sub(250);
+        let size = pitch * height;
+        let room = self.memory.saturating_sub(size) / 64;
+        // Half of them at an end of memory, where an error would show.
+        let base = match bytes.byte() % 4 {
+            0 => 0,
+            1 => 64 * room,
+            _ => 64 * bytes.below(room + 1),
+        };
+        let depth_pitch = (width * 4).next_multiple_of(64);
+        let depth_size = depth_pitch * height;
+        let after = base.saturating_add(size);
+        let depth = match bytes.byte() {
+            0..50 => None,
+            _ if after + depth_size <= self.memory => Some([after, depth_pitch]),
+            _ if depth_size <= base => Some([base - depth_size, depth_pitch]),
+            _ => None,
+        };
+        let depth_bits = bytes.pick(&[24, 16, 31]);
+        let fraction = bytes.pick(&[24, 0, 8, 16]);
+        let maximum_depth = (1 << depth_bits) - 1;
+        Picture { width, height, base, pitch, format, depth, depth_format: depth_bits | (fraction << 8), maximum_depth }
+    }
+
+    /// A rectangle for pixels of `pixel` bytes; of `size` if it is given. Seldom outside.
+    fn area(&mut self, pixel: u32, size: Option<[u32; 2]>) -> Area {
+        let bytes = &mut *self.bytes;
+        let columns = 1 + bytes.below(1024);
+        let pitch = pixel * columns;
+        let [width, height] = size.unwrap_or_else(|| [bytes.below(columns + 1), bytes.below(256)]);
+        let x = bytes.below(columns.saturating_sub(width) + 1);
+        let y = bytes.below(16);
+        let end = pitch.saturating_mul((y + height).saturating_sub(1)).saturating_add(pixel * (x + width));
+        let room = self.memory.saturating_sub(end) / pixel;
+        // A third of them end with the last pixel of memory.
+        let base = pixel * if bytes.chance(85) { room } else { bytes.below(room + 1) };
+        Area { base, pitch, x, y, width, height }
+    }
+
+    pub(super) fn fill(&mut self) {
+        let format = self.bytes.below(3);
+        let Area { base, pitch, x, y, width, height } = self.area(if format == 2 { 2 } else { 4 }, None);
+        let value = self.bytes.raw();
+        self.push(Opcode::Fill, &[base, pitch, format, x, y, width, height, value]);
+    }
+
+    pub(super) fn copy(&mut self) {
+        let format = self.bytes.below(3);
+        let pixel = if format == 2 { 2 } else { 4 };
+        let from = self.area(pixel, None);
+        let to = match self.bytes.byte() % 4 {
+            // Overlapping, with the same pitch and with another.
+            0 | 1 => {
+                let near = self.bytes.below(from.x + 3);
+                Area { x: near, y: self.bytes.below(from.y + 3), ..from }
+            }
+            2 => Area { pitch: from.pitch + pixel * self.bytes.below(3), ..from },
+            _ => self.area(pixel, Some([from.width, from.height])),
+        };
+        let source = [format, from.base, from.pitch, from.x, from.y];
+        let destination = [to.base, to.pitch, to.x, to.y];
+        self.push(Opcode::Copy, &[&source[..], &destination, &[from.width, from.height]].concat());
+    }
+
+    pub(super) fn upload(&mut self) {
+        let (words, rows) = (self.bytes.below(12), self.bytes.below(6));
+        let pitch = 4 * (words + self.bytes.below(20));
+        let address = 4 * self.bytes.below(self.memory.saturating_sub(pitch * rows) / 4);
+        let mut payload = vec![address, pitch, words, rows];
+        payload.extend((0..words * rows).map(|_| self.bytes.word()));
+        self.push(Opcode::Upload, &payload);
+    }
+
+    pub(super) fn download(&mut self) {
+        let (words, rows) = (self.bytes.below(300), self.bytes.below(100));
+        let pitch = 4 * (words + self.bytes.below(20));
+        let address = 4 * self.bytes.below(self.memory.saturating_sub(pitch * rows) / 4);
+        let destination = match self.bytes.byte() % 2 {
+            0 => 4 * self.bytes.below(self.memory.saturating_sub(4 * words * rows) / 4),
+            // Overlapping its source.
+            _ => address.saturating_add(4 * self.bytes.below(64)).saturating_sub(128),
+        };
+        self.push(Opcode::Download, &[address, pitch, words, rows, destination]);
+    }
+}

@@ -1,0 +1,189 @@
+//! How a card is built and how it draws.
+
+use super::packet::{EFFECT_DECAL, EFFECT_DEPTH, EFFECT_GOURAUD, EFFECT_PERSPECTIVE};
+use crate::oracle::{DepthFormat, DepthFunction};
+use zga_device::Kernel;
+
+/// Which way packets go to the card.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Feed {
+    /// The ring in video memory.
+    #[default]
+    Ring,
+    /// The PIO FIFO.
+    Fifo,
+}
+
+/// Format of the frame buffer; the number is the register's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pixels {
+    /// 31:24 written as 255, then red, green, blue.
+    #[default]
+    Xrgb8888 = 0,
+    /// Alpha, red, green, blue.
+    Argb8888 = 1,
+    /// 15:11 red, 10:5 green, 4:0 blue.
+    Rgb565 = 2,
+}
+
+impl Pixels {
+    /// Bytes of a pixel.
+    #[must_use]
+    pub const fn bytes(self) -> u32 {
+        match self {
+            Self::Xrgb8888 | Self::Argb8888 => 4,
+            Self::Rgb565 => 2,
+        }
+    }
+
+    /// The vertex colour (red in 7:0) whose stored pixel is `id` in its low bits.
+    #[must_use]
+    pub const fn colour_of(self, id: u32) -> u32 {
+        let (r, g, b) = match self {
+            Self::Xrgb8888 | Self::Argb8888 => (id >> 16 & 255, id >> 8 & 255, id & 255),
+            Self::Rgb565 => ((id >> 11 & 31) << 3, (id >> 5 & 63) << 2, (id & 31) << 3),
+        };
+        r | g << 8 | b << 16 | 0xFF00_0000
+    }
+
+    /// The identity in a stored pixel.
+    #[must_use]
+    pub const fn id_of(self, pixel: u32) -> u32 {
+        match self {
+            Self::Xrgb8888 | Self::Argb8888 => pixel & 0x00FF_FFFF,
+            Self::Rgb565 => pixel & 0xFFFF,
+        }
+    }
+}
+
+/// A card and its target.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Number format of depth.
+    pub depth: DepthFormat,
+    /// Format of the frame buffer.
+    pub pixels: Pixels,
+    /// Pixel code.
+    pub kernel: Kernel,
+    /// Host threads.
+    pub threads: usize,
+    /// Bits of a pixel that coordinates are snapped to.
+    pub subpixel_bits: u32,
+    /// Which way packets go.
+    pub feed: Feed,
+    /// Bytes of video memory for [`super::Screen::draw_buffer`].
+    pub vertex_bytes: u32,
+}
+
+impl Default for Options {
+    /// XRGB8888, 24 bits of depth with 24 fraction bits, 8 sub-pixel bits, one thread, the best kernel, the ring.
+    fn default() -> Self {
+        Self {
+            depth: DepthFormat::default(),
+            pixels: Pixels::default(),
+            kernel: Kernel::Best,
+            threads: 1,
+            subpixel_bits: 8,
+            feed: Feed::Ring,
+            vertex_bytes: 0,
+        }
+    }
+}
+
+/// The geometry registers. Matrices are row-major for row vectors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Object to eye.
+    pub object_eye: [f32; 16],
+    /// Decal transform in eye space.
+    pub decal: [f32; 16],
+    /// Eye to clip space.
+    pub eye_clip: [f32; 16],
+    /// Scale x, y, z, offset x, y, z.
+    pub viewport: [f32; 6],
+}
+
+/// The identity matrix.
+pub const IDENTITY: [f32; 16] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+
+impl Default for Camera {
+    /// Object coordinates are pixels and depth.
+    fn default() -> Self {
+        Self { object_eye: IDENTITY, decal: IDENTITY, eye_clip: IDENTITY, viewport: [1., 1., 1., 0., 0., 0.] }
+    }
+}
+
+impl Camera {
+    /// The words of the registers.
+    #[must_use]
+    pub fn words(&self) -> Vec<u32> {
+        let all = [&self.object_eye[..], &self.decal, &self.eye_clip, &self.viewport];
+        all.concat().into_iter().map(f32::to_bits).collect()
+    }
+}
+
+/// State of a draw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Whether depth is tested at all.
+    pub depth_test: bool,
+    /// Depth test.
+    pub function: DepthFunction,
+    /// Whether a passing depth is stored.
+    pub write: bool,
+    /// Colours interpolated.
+    pub gouraud: bool,
+    /// Colours interpolated perspective-correct.
+    pub perspective: bool,
+    /// Depth through the decal matrix.
+    pub decal: bool,
+    /// Left, top, right, bottom in pixels, the last two exclusive; all of the target without it.
+    pub scissor: Option<[u32; 4]>,
+    /// Geometry registers.
+    pub camera: Camera,
+    /// Most primitives of a packet; 0 puts in all that fit.
+    pub piece: usize,
+}
+
+impl Default for State {
+    /// Depth test less, written; flat colours; the identity camera.
+    fn default() -> Self {
+        Self {
+            depth_test: true,
+            function: DepthFunction::Less,
+            write: true,
+            gouraud: false,
+            perspective: false,
+            decal: false,
+            scissor: None,
+            camera: Camera::default(),
+            piece: 0,
+        }
+    }
+}
+
+impl State {
+    /// The default with another depth function.
+    #[must_use]
+    pub fn with(function: DepthFunction) -> Self {
+        Self { function, ..Self::default() }
+    }
+
+    /// The EFFECTS register.
+    #[must_use]
+    pub fn effects(&self) -> u32 {
+        let bit = |on: bool, mask: u32| if on { mask } else { 0 };
+        bit(self.depth_test, EFFECT_DEPTH)
+            | bit(self.gouraud, EFFECT_GOURAUD)
+            | bit(self.perspective, EFFECT_PERSPECTIVE)
+            | bit(self.decal, EFFECT_DECAL)
+    }
+
+    /// Words of effects, depth control, material colour, tag, scissor minimum and maximum.
+    #[must_use]
+    pub fn words(&self) -> [u32; 6] {
+        let function = DepthFunction::ALL.iter().position(|&f| f == self.function).unwrap_or(0) as u32;
+        let [left, top, right, bottom] = self.scissor.unwrap_or([0, 0, 0x7FFF, 0x7FFF]);
+        [self.effects(), function | u32::from(self.write) << 8, u32::MAX, 0, top << 16 | left, bottom << 16 | right]
+    }
+}

@@ -1,0 +1,96 @@
+//! Registers and packets of the card, restated from the manual.
+
+/// Soft reset.
+pub const RESET: u32 = 0x0040;
+/// Interrupts that have occurred; writing 1 clears.
+pub const INTERRUPT_STATUS: u32 = 0x0080;
+/// Interrupts that reach the host.
+pub const INTERRUPT_ENABLE: u32 = 0x0084;
+/// Why a packet was refused; 0 is no error. The words behind it: source, offset, header, word, value.
+pub const ERROR_CODE: u32 = 0x0088;
+/// First byte of the ring.
+pub const RING_BASE: u32 = 0x0100;
+/// Words of the ring.
+pub const RING_SIZE: u32 = 0x0104;
+/// Word offset after the last word written.
+pub const RING_PUT: u32 = 0x0108;
+/// Makes the card look at [`RING_PUT`].
+pub const DOORBELL: u32 = 0x0110;
+/// Number of the last fence executed.
+pub const FENCE_SEQUENCE: u32 = 0x0140;
+/// Size, colour base, pitch, format, depth base, pitch, format.
+pub const TARGET: u32 = 0x0200;
+/// Hidden-surface path, sub-pixel bits.
+pub const PATH: u32 = 0x0240;
+/// Effects, depth control, material colour, tag, scissor minimum, scissor maximum.
+pub const DRAW_STATE: u32 = 0x0280;
+/// Object to eye, decal, eye to clip (16 each), viewport (6).
+pub const GEOMETRY: u32 = 0x0400;
+/// 1 clears the counters.
+pub const COUNTER_CONTROL: u32 = 0x0708;
+/// Counters, low word first.
+pub const COUNTERS: u32 = 0x1000;
+/// The PIO FIFO window.
+pub const FIFO: u32 = 0x8000;
+/// Video memory.
+pub const MEMORY: u32 = 0x4000_0000;
+/// The fence interrupt.
+pub const INTERRUPT_FENCE: u32 = 1;
+
+/// Effect: depth test.
+pub const EFFECT_DEPTH: u32 = 1;
+/// Effect: colours interpolated.
+pub const EFFECT_GOURAUD: u32 = 2;
+/// Effect: perspective-correct.
+pub const EFFECT_PERSPECTIVE: u32 = 4;
+/// Effect: depth through the decal matrix.
+pub const EFFECT_DECAL: u32 = 8;
+
+/// A packet: opcode in 31:24, number of payload words in 19:0, payload.
+#[must_use]
+pub fn packet(opcode: u32, payload: &[u32]) -> Vec<u32> {
+    assert!(payload.len() < 1 << 20, "the payload does not fit a packet");
+    [&[opcode << 24 | payload.len() as u32], payload].concat()
+}
+
+/// REGISTER_WRITE from a byte offset upward.
+#[must_use]
+pub fn registers(offset: u32, values: &[u32]) -> Vec<u32> {
+    packet(0x01, &[&[offset], values].concat())
+}
+
+/// BEGIN_SCENE.
+#[must_use]
+pub fn begin_scene() -> Vec<u32> {
+    packet(0x02, &[])
+}
+
+/// END_SCENE.
+#[must_use]
+pub fn end_scene() -> Vec<u32> {
+    packet(0x03, &[])
+}
+
+/// CLEAR of frame buffer and Z buffer.
+#[must_use]
+pub fn clear(colour: u32, depth: u32) -> Vec<u32> {
+    packet(0x04, &[3, colour, depth])
+}
+
+/// DRAW_INLINE.
+#[must_use]
+pub fn draw_inline(flags: u32, vertices: u32, words: &[u32], indices: &[u32]) -> Vec<u32> {
+    packet(0x10, &[&[flags, vertices, indices.len() as u32], words, indices].concat())
+}
+
+/// DRAW_BUFFER.
+#[must_use]
+pub fn draw_buffer(flags: u32, address: u32, vertices: u32, index_address: u32, indices: u32) -> Vec<u32> {
+    packet(0x11, &[flags, address, vertices, index_address, indices])
+}
+
+/// FENCE.
+#[must_use]
+pub fn fence(sequence: u32) -> Vec<u32> {
+    packet(0x30, &[sequence])
+}

@@ -1,0 +1,419 @@
+//! A card with a target: draws, reads back, counts.
+//!
+//! Video memory holds, each at a multiple of 4096: the ring, a gap, the frame buffer, a gap, the Z buffer, a gap, room for
+//! vertices. Gaps and row ends are filled with [`CANARY`] words, which nothing may change.
+
+use super::depth;
+use super::options::{Feed, Options, Pixels, State};
+use super::packet;
+use super::picture::Picture;
+use crate::oracle::{Primitive, Vertex};
+use std::time::Duration;
+use zga_abi::Bus;
+use zga_device::{Card, CardBus, CardOptions, Snapshot};
+
+/// Words of the ring.
+const RING_WORDS: u32 = 1 << 17;
+/// Bytes between the buffers.
+const GAP: u32 = 4096;
+/// What gaps and row ends hold.
+const CANARY: u32 = 0x5AFE_C0DE;
+/// Words that are queued before they are sent.
+const QUEUE_WORDS: usize = 1 << 16;
+/// Longer than any work of a test.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// How vertices make primitives; the number is the packet's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Topology {
+    /// Three vertices each.
+    Triangles = 0,
+    /// Two vertices each.
+    Lines = 1,
+    /// One vertex each.
+    Points = 2,
+    /// One vertex each after the first.
+    LineStrip = 3,
+}
+
+impl Topology {
+    const fn vertices(self) -> usize {
+        match self {
+            Self::Triangles => 3,
+            Self::Lines => 2,
+            Self::Points | Self::LineStrip => 1,
+        }
+    }
+}
+
+/// A vertex as a packet carries it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RawVertex {
+    /// x, y, z.
+    pub position: [f32; 3],
+    /// Red in 7:0.
+    pub colour: u32,
+}
+
+/// Counters of the drawing units; nothing here depends on the way packets came.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Clocks of geometry, Z buffer, shading.
+    pub clocks: [u64; 3],
+    /// Vertices transformed.
+    pub vertices: u64,
+    /// Primitives that arrived.
+    pub primitives: u64,
+    /// Primitives that a clip plane cut.
+    pub clipped: u64,
+    /// Primitives dropped.
+    pub discarded: u64,
+    /// Runs of pixels of a triangle on a row.
+    pub spans: u64,
+    /// Depths compared.
+    pub reads: u64,
+    /// Depths written.
+    pub writes: u64,
+    /// Colours written.
+    pub colours: u64,
+    /// Colours interpolated.
+    pub shaded: u64,
+}
+
+/// Places of the buffers, bytes.
+#[derive(Clone, Copy, Debug)]
+struct Places {
+    colour: u32,
+    colour_pitch: u32,
+    depth: u32,
+    depth_pitch: u32,
+    vertices: u32,
+    end: u32,
+}
+
+/// A card and its target.
+#[derive(Debug)]
+pub struct Screen {
+    card: Card,
+    bus: CardBus,
+    width: u32,
+    height: u32,
+    options: Options,
+    places: Places,
+    ring_put: u32,
+    sequence: u32,
+    in_scene: bool,
+    state: Option<State>,
+    queue: Vec<Vec<u32>>,
+    queued: usize,
+    next_id: u32,
+}
+
+impl Screen {
+    /// Powers a card on and clears a target of `width` x `height` pixels.
+    ///
+    /// # Panics
+    /// When the card does not come up.
+    #[must_use]
+    pub fn new(width: u32, height: u32, options: &Options) -> Self {
+        let pitch = |bytes: u32| bytes.next_multiple_of(64);
+        let (colour_pitch, depth_pitch) = (pitch(width * options.pixels.bytes()), pitch(width * 4));
+        let colour = 4 * RING_WORDS + GAP;
+        let depth = (colour + colour_pitch * height).next_multiple_of(GAP) + GAP;
+        let vertices = (depth + depth_pitch * height).next_multiple_of(GAP) + GAP;
+        let end = (vertices + options.vertex_bytes).next_multiple_of(GAP).max(1 << 20);
+        let card = Card::power_on(CardOptions {
+            video_memory: end,
+            threads: options.threads,
+            kernel: options.kernel,
+            ..CardOptions::default()
+        });
+        let card = card.expect("the card has power");
+        let mut screen = Self {
+            bus: card.bus(),
+            card,
+            width,
+            height,
+            options: *options,
+            places: Places { colour, colour_pitch, depth, depth_pitch, vertices, end },
+            ring_put: 0,
+            sequence: 0,
+            in_scene: false,
+            state: None,
+            queue: Vec::new(),
+            queued: 0,
+            next_id: 1,
+        };
+        screen.fill_gaps();
+        screen.start();
+        screen.clear();
+        screen
+    }
+
+    /// The depth format, and what else the card was built with.
+    #[must_use]
+    pub const fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// Sets the registers that a reset clears.
+    fn start(&mut self) {
+        self.bus.write32(packet::INTERRUPT_ENABLE, packet::INTERRUPT_FENCE);
+        self.bus.write32(packet::RING_BASE, 0);
+        self.bus.write32(packet::RING_SIZE, RING_WORDS);
+        (self.ring_put, self.state, self.in_scene) = (0, None, false);
+        let Places { colour, colour_pitch, depth, depth_pitch, .. } = self.places;
+        let Options { pixels, depth: format, subpixel_bits, .. } = self.options;
+        let size = self.height << 16 | self.width;
+        let format = format.bits | format.fraction << 8;
+        let target = [size, colour, colour_pitch, pixels as u32, depth, depth_pitch, format];
+        self.push(packet::registers(packet::TARGET, &target));
+        self.push(packet::registers(packet::PATH, &[0, subpixel_bits]));
+    }
+
+    /// Clears the whole target: black (identity 0) and the farthest depth. Identities begin anew.
+    pub fn clear(&mut self) {
+        self.begin(&State::default());
+        let depth = self.options.depth.greatest();
+        self.push(packet::clear(0, depth));
+        self.next_id = 1;
+    }
+
+    /// Draws primitives in their own colours.
+    pub fn draw(&mut self, primitives: &[Primitive], state: &State) {
+        self.draw_with(primitives, state, |vertex, _| u32::from_le_bytes(vertex.colour));
+    }
+
+    /// Draws primitives, each in a colour that tells its number since the last clear.
+    pub fn draw_ids(&mut self, primitives: &[Primitive], state: &State) {
+        let (first, pixels) = (self.next_id, self.options.pixels);
+        self.next_id += primitives.len() as u32;
+        self.draw_with(primitives, state, |_, number| pixels.colour_of(first + number));
+    }
+
+    fn draw_with(&mut self, primitives: &[Primitive], state: &State, colour: impl Fn(&Vertex, u32) -> u32) {
+        let bits = self.options.depth.bits;
+        let mut number = 0;
+        for run in primitives.chunk_by(|a, b| topology(a) == topology(b)) {
+            let mut vertices = Vec::with_capacity(3 * run.len());
+            for primitive in run {
+                vertices.extend(primitive.vertices().iter().map(|v| raw(v, bits, colour(v, number))));
+                number += 1;
+            }
+            self.draw_raw(topology(&run[0]), &vertices, None, state);
+        }
+    }
+
+    /// Draws vertices as they are, from the packet. Primitives are handed out over packets as `state.piece` says;
+    /// strips and indexed draws go in one.
+    pub fn draw_raw(&mut self, topology: Topology, vertices: &[RawVertex], indices: Option<&[u32]>, state: &State) {
+        self.begin(state);
+        let flags = topology as u32 | 0x100 | u32::from(indices.is_some()) << 4;
+        let whole = indices.is_some() || topology == Topology::LineStrip;
+        let fits = (RING_WORDS as usize - 64) / (4 * topology.vertices());
+        let piece = if state.piece == 0 || whole { fits } else { state.piece.min(fits) };
+        let piece = if whole { vertices.len().max(1) } else { piece * topology.vertices() };
+        for part in vertices.chunks(piece) {
+            let words = words_of(part);
+            self.push(packet::draw_inline(flags, part.len() as u32, &words, indices.unwrap_or(&[])));
+        }
+    }
+
+    /// Draws vertices from video memory in one packet.
+    ///
+    /// # Panics
+    /// When they do not fit `vertex_bytes`.
+    pub fn draw_buffer(&mut self, topology: Topology, vertices: &[RawVertex], indices: Option<&[u32]>, state: &State) {
+        let (at, words) = (self.places.vertices, words_of(vertices));
+        let index_at = at + 4 * words.len() as u32;
+        let list = indices.unwrap_or(&[]);
+        assert!(index_at + 4 * list.len() as u32 <= self.places.end, "vertex_bytes is too small");
+        self.flush();
+        self.bus.write_burst(packet::MEMORY + at, &words);
+        self.bus.write_burst(packet::MEMORY + index_at, list);
+        self.begin(state);
+        let flags = topology as u32 | 0x100 | u32::from(indices.is_some()) << 4;
+        let index_at = if indices.is_some() { index_at } else { 0 };
+        self.push(packet::draw_buffer(flags, at, vertices.len() as u32, index_at, list.len() as u32));
+    }
+
+    /// Ends the scene and reads the target back.
+    pub fn read(&mut self) -> Picture {
+        if self.in_scene {
+            self.push(packet::end_scene());
+            self.in_scene = false;
+        }
+        self.flush();
+        let Places { colour, colour_pitch, depth, depth_pitch, vertices, .. } = self.places;
+        let mut words = vec![0; ((vertices - (colour - GAP)) / 4) as usize];
+        self.bus.read_burst(packet::MEMORY + colour - GAP, &mut words);
+        let (width, height) = (self.width as usize, self.height as usize);
+        let pixels = self.options.pixels;
+        let word = |at: u32| ((at - (colour - GAP)) / 4) as usize;
+        let rows = |base: u32, pitch: u32| (0..height).map(move |j| word(base) + j * (pitch / 4) as usize);
+        let mut picture =
+            Picture { width: self.width, height: self.height, pixels, colour: vec![], depth: vec![], strays: 0 };
+        // Pixels are taken out; what is left must be canaries.
+        for start in rows(colour, colour_pitch) {
+            for x in 0..width {
+                picture.colour.push(take_pixel(&mut words, start, x, pixels));
+            }
+        }
+        for start in rows(depth, depth_pitch) {
+            picture.depth.extend(&words[start..start + width]);
+            words[start..start + width].fill(CANARY);
+        }
+        picture.strays = words.iter().filter(|&&word| word != CANARY).count();
+        picture
+    }
+
+    /// Counts of the drawing units since [`Screen::clear_counts`].
+    pub fn counts(&mut self) -> Counts {
+        self.flush();
+        let mut counter = |index: u32| {
+            let low = self.bus.read32(packet::COUNTERS + 8 * index);
+            u64::from(low) | u64::from(self.bus.read32(packet::COUNTERS + 8 * index + 4)) << 32
+        };
+        Counts {
+            clocks: [2, 3, 4].map(&mut counter),
+            vertices: counter(10),
+            primitives: counter(11),
+            clipped: counter(12),
+            discarded: counter(13),
+            spans: counter(14),
+            reads: counter(15),
+            writes: counter(16),
+            colours: counter(17),
+            shaded: counter(18),
+        }
+    }
+
+    /// Sets all counters to 0.
+    pub fn clear_counts(&mut self) {
+        self.flush();
+        self.bus.write32(packet::COUNTER_CONTROL, 1);
+    }
+
+    /// Resets the card and sets its registers again; memory stays.
+    pub fn reset(&mut self) {
+        self.flush();
+        self.bus.write32(packet::RESET, 1);
+        self.start();
+    }
+
+    /// Everything the card holds.
+    ///
+    /// # Panics
+    /// When the card is gone.
+    pub fn snapshot(&mut self) -> Snapshot {
+        self.flush();
+        self.card.snapshot().expect("the card is there")
+    }
+
+    /// Puts the card, and what this harness knows of it, back to a snapshot that this or a like screen took with
+    /// nothing but draws since.
+    ///
+    /// # Panics
+    /// When the snapshot is of another card.
+    pub fn restore(&mut self, snapshot: &Snapshot) {
+        self.flush();
+        self.card.restore(snapshot).expect("a snapshot of such a card");
+        self.ring_put = self.bus.read32(packet::RING_PUT);
+        self.state = None;
+        // STATUS: between begin scene and end scene.
+        self.in_scene = self.bus.read32(0x0044) & 8 != 0;
+    }
+
+    /// Opens the scene and sets the state where they are not yet.
+    fn begin(&mut self, state: &State) {
+        if self.state != Some(*state) {
+            self.push(packet::registers(packet::DRAW_STATE, &state.words()));
+            self.push(packet::registers(packet::GEOMETRY, &state.camera.words()));
+            self.state = Some(*state);
+        }
+        if !self.in_scene {
+            self.push(packet::begin_scene());
+            self.in_scene = true;
+        }
+    }
+
+    fn push(&mut self, packet: Vec<u32>) {
+        if self.queued + packet.len() > QUEUE_WORDS {
+            self.flush();
+        }
+        self.queued += packet.len();
+        self.queue.push(packet);
+    }
+
+    /// Sends what is queued and waits until it is done.
+    ///
+    /// # Panics
+    /// When the card refuses a packet or does not come to an end.
+    pub fn flush(&mut self) {
+        self.sequence += 1;
+        self.queue.push(packet::fence(self.sequence));
+        let stream = std::mem::take(&mut self.queue).concat();
+        self.queued = 0;
+        match self.options.feed {
+            Feed::Fifo => self.bus.write_burst(packet::FIFO, &stream),
+            Feed::Ring => {
+                assert!(stream.len() < RING_WORDS as usize, "{} words do not fit the ring", stream.len());
+                let room = (RING_WORDS - self.ring_put) as usize;
+                let (first, rest) = stream.split_at(room.min(stream.len()));
+                self.bus.write_burst(packet::MEMORY + 4 * self.ring_put, first);
+                self.bus.write_burst(packet::MEMORY, rest);
+                self.ring_put = (self.ring_put + stream.len() as u32) % RING_WORDS;
+                self.bus.write32(packet::RING_PUT, self.ring_put);
+                self.bus.write32(packet::DOORBELL, 1);
+            }
+        }
+        let sequence = self.sequence;
+        while self.bus.read32(packet::FENCE_SEQUENCE) != sequence {
+            let raised = self.bus.wait_interrupt(packet::INTERRUPT_FENCE, PATIENCE);
+            self.bus.write32(packet::INTERRUPT_STATUS, packet::INTERRUPT_FENCE);
+            let error = [0, 4, 8, 12, 16, 20].map(|k| self.bus.read32(packet::ERROR_CODE + k));
+            assert!(raised != 0 && error[0] == 0, "the card stands still: error registers {error:x?}");
+        }
+        assert_eq!(self.bus.read32(packet::ERROR_CODE), 0, "a packet was refused");
+    }
+
+    fn fill_gaps(&mut self) {
+        let from = self.places.colour - GAP;
+        let words = vec![CANARY; ((self.places.vertices - from) / 4) as usize];
+        self.bus.write_burst(packet::MEMORY + from, &words);
+    }
+}
+
+/// Takes pixel `x` out of the row that begins at word `start`, and puts the canary's bits in its place.
+fn take_pixel(words: &mut [u32], start: usize, x: usize, pixels: Pixels) -> u32 {
+    if pixels != Pixels::Rgb565 {
+        return std::mem::replace(&mut words[start + x], CANARY);
+    }
+    let (word, shift) = (&mut words[start + x / 2], 16 * (x % 2));
+    let pixel = *word >> shift & 0xFFFF;
+    *word = *word & !(0xFFFF << shift) | CANARY & (0xFFFF << shift);
+    pixel
+}
+
+const fn topology(primitive: &Primitive) -> Topology {
+    match primitive {
+        Primitive::Triangle(_) => Topology::Triangles,
+        Primitive::Line(_) => Topology::Lines,
+        Primitive::Point(_) => Topology::Points,
+    }
+}
+
+/// An oracle's vertex as a packet carries it under the identity camera.
+///
+/// # Panics
+/// When the depth has no f32: take it through [`depth::survivor`] first.
+#[must_use]
+pub fn raw(vertex: &Vertex, bits: u32, colour: u32) -> RawVertex {
+    let z = depth::encode(vertex.z, bits).unwrap_or_else(|| panic!("depth {} of {bits} bits has no f32", vertex.z));
+    RawVertex { position: [vertex.x as f32 / 256.0, vertex.y as f32 / 256.0, z], colour }
+}
+
+fn words_of(vertices: &[RawVertex]) -> Vec<u32> {
+    let words = |v: &RawVertex| [v.position[0].to_bits(), v.position[1].to_bits(), v.position[2].to_bits(), v.colour];
+    vertices.iter().flat_map(words).collect()
+}

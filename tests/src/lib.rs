@@ -1,0 +1,6 @@
+//! Exact oracle, hard cases, differential and register-level tests, and fuzzing of the ZGA card.
+
+pub mod fuzz;
+pub mod hard;
+pub mod harness;
+pub mod oracle;
