@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | [`scene`], [`mesh`], [`teapot`], [`demos`] | what is drawn, independent of any card |
 //! | [`play`] | a scene through driver and card, and what it cost |
-//! | [`bench`] | the benchmark scenes |
+//! | [`mod@bench`] | the benchmark scenes |
 //! | [`registers`] | the manual of the register map |
 //! | [`picture`] | PNG files and exact comparison |
 //! | [`cli`] | the commands |

@@ -50,7 +50,7 @@ counters! {
     GeometryVertices "geometry.vertices" "Vertices transformed.",
     GeometryPrimitives "geometry.primitives" "Primitives that arrived.",
     GeometryClipped "geometry.clipped" "Primitives that a clip plane cut.",
-    GeometryDiscarded "geometry.discarded" "Primitives that were dropped: a NaN, or nothing left inside the clip volume, or no area.",
+    GeometryDiscarded "geometry.discarded" "Primitives that were dropped: a NaN, or nothing left inside the clip volume, or no pixel centre inside.",
     ZSpans "z.spans" "Runs of pixels of one triangle on one row.",
     ZReads "z.reads" "Depths read and compared.",
     ZWrites "z.writes" "Depths written, clears included.",

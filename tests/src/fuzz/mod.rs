@@ -1,7 +1,7 @@
 //! Fuzzing over the whole bus: bytes become actions, actions go to a card, the card must survive.
 //!
 //! [`run`] is all that a fuzzer, a random test or a soak needs. It powers a card on, does what the
-//! bytes stand for, and then asks whether the card is still a card ([`reference`]): it identifies
+//! bytes stand for, and then asks whether the card is still a card ([`mod@reference`]): it identifies
 //! itself, it resets, and a known scene gives the known picture.
 //!
 //! | module | part |
@@ -11,9 +11,9 @@
 //! | [`packets`], `surfaces`, `draws` | packets that are valid but for a few words |
 //! | [`session`] | a card, and the actions done to it one by one |
 //! | [`coverage`] | which packets were executed, which faults were seen |
-//! | [`reference`] | does the card still answer? |
+//! | [`mod@reference`] | does the card still answer? |
 //! | [`compare`] | two cards that must end in the same state |
-//! | [`minimise`] | a failing list of actions, cut down |
+//! | [`mod@minimise`] | a failing list of actions, cut down |
 //!
 //! # Two paces
 //! In a race the host does not wait: it writes memory and registers under the card's hands. In lock-step

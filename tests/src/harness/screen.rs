@@ -1,7 +1,7 @@
 //! A card with a target: draws, reads back, counts.
 //!
 //! Video memory holds, each at a multiple of 4096: the ring, a gap, the frame buffer, a gap, the Z buffer, a gap, room for
-//! vertices. Gaps and row ends are filled with [`CANARY`] words, which nothing may change.
+//! vertices. Gaps and row ends are filled with canary words, which nothing may change.
 
 use super::depth;
 use super::options::{Feed, Options, Pixels, State};
