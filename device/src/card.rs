@@ -187,7 +187,7 @@ impl Hardware for Wiring<'_> {
 
     fn end_scene(&mut self) -> Result<(), Stopped> {
         let Blocks { pipeline, bitmap, scanout, account, powered, .. } = &mut *self.blocks;
-        let ended = pipeline.end_scene(self.memory.words_mut(), account);
+        let ended = pipeline.end_scene(self.memory.drawing(), account);
         // Begin scene takes all power away. Memory goes back only now, from what the scene did not
         // call for: a unit that every scene needs keeps its memory from one to the next.
         if !powered.intersects(PIPELINE) {
@@ -205,7 +205,9 @@ impl Hardware for Wiring<'_> {
     fn clear(&mut self, clear: &Clear) {
         let Blocks { pipeline, probe, account, .. } = &mut *self.blocks;
         probe.clear(&self.backplane.registers, self.memory.words(), clear);
-        pipeline.clear(self.memory.words_mut(), clear, account);
+        let foreign = self.memory.foreign();
+        pipeline.clear(self.memory.drawing(), foreign, clear, account);
+        self.memory.remember(pipeline.remembered());
         self.store_records();
     }
 
@@ -228,7 +230,7 @@ impl Hardware for Wiring<'_> {
             _ => None,
         };
         let watch = probe.watch(registers);
-        let drawn = pipeline.draw(self.memory.words_mut(), &geometry, state, draw, watch, account, &stop);
+        let drawn = pipeline.draw(self.memory.drawing(), &geometry, state, draw, watch, account, &stop);
         self.store_records();
         drawn
     }

@@ -15,6 +15,7 @@ use crate::geometry::transform::Transform;
 use crate::hidden::z_buffer::band::{Scratch, Setting};
 use crate::hidden::z_buffer::bins::Bins;
 use crate::hidden::z_buffer::tile::{TILE, TileCounts};
+use crate::hidden::z_buffer::uniform::Uniform;
 use crate::hidden::z_buffer::{self, DepthTest, specification, surfaces};
 use crate::probe::account::{Account, Clocks};
 use crate::probe::pixel::PixelProbe;
@@ -33,6 +34,8 @@ use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Target};
 const BATCH: u32 = 1 << 18;
 /// Fewer primitives than this are assembled by one thread: handing them out would take longer.
 const SHARE: u32 = 1 << 10;
+/// A draw of less weight than this ([`Bins::weight`]) is drawn by one thread.
+const WEIGHT: u64 = 1 << 18;
 /// Most host threads.
 const MAX_THREADS: usize = 256;
 
@@ -99,6 +102,8 @@ pub struct Pipeline {
     workers: Workers,
     shared: Vec<Option<ScreenVertex>>,
     list: List,
+    /// What the Z buffer is known to hold since its last clear.
+    uniform: Option<Uniform>,
 }
 
 /// Host threads and what each of them works with; empty until the first draw.
@@ -126,12 +131,15 @@ impl Pipeline {
             workers: Workers::default(),
             shared: Vec::new(),
             list: List::default(),
+            uniform: None,
         }
     }
 
     /// Begins a scene on `target`.
     pub fn begin_scene(&mut self, target: &Target) {
         self.target = Some(*target);
+        // Another frame buffer could lie over the Z buffer that is remembered.
+        self.uniform = self.uniform.take().filter(|uniform| uniform.is_of(target));
     }
 
     /// Ends the scene. Everything is in memory already: this path keeps nothing back.
@@ -148,12 +156,35 @@ impl Pipeline {
         self.workers = Workers::default();
         self.shared = Vec::new();
         self.list = List::default();
+        self.uniform = None;
     }
 
-    /// Clears planes of the target.
-    pub fn clear(&mut self, memory: &mut [u32], clear: &Clear, account: &mut Account) {
-        if let Some(target) = &self.target {
-            z_buffer::clear(memory, target, clear, account);
+    /// Words of video memory whose contents are remembered from clear to clear.
+    #[must_use]
+    pub fn remembered(&self) -> Range<usize> {
+        self.uniform.as_ref().map_or(0..0, Uniform::words)
+    }
+
+    /// Clears planes of the target. `foreign` counts the changes that others may have made to the
+    /// remembered words.
+    pub fn clear(&mut self, memory: &mut [u32], foreign: u64, clear: &Clear, account: &mut Account) {
+        let Some(target) = &self.target else {
+            return;
+        };
+        let all = Rectangle { x: 0, y: 0, right: target.colour.width, bottom: target.colour.height };
+        let known = self.uniform.take();
+        match (clear.depth, target.depth) {
+            (None, _) | (_, None) => {
+                z_buffer::clear(memory, target, clear, None, account);
+                self.uniform = known;
+            }
+            (Some(value), Some(surface)) if clear.area == all && self.level.is_some() => {
+                let mut uniform = Uniform::before_clear(known, target, surface, value, foreign);
+                z_buffer::clear(memory, target, clear, Some(&uniform), account);
+                uniform.cleared(foreign);
+                self.uniform = Some(uniform);
+            }
+            _ => z_buffer::clear(memory, target, clear, None, account),
         }
     }
 
@@ -226,7 +257,7 @@ impl Pipeline {
         let count = fetch.vertices();
         let vertex = |v: usize| transform.inside(&fetch.vertex(v));
         self.shared.clear();
-        match self.workers.pool_for(self.threads, count as u32) {
+        match self.workers.pool_for(self.threads, count >= 2 * SHARE as usize) {
             Some(pool) => pool.install(|| (0..count).into_par_iter().map(vertex).collect_into_vec(&mut self.shared)),
             None => self.shared.extend((0..count).map(vertex)),
         }
@@ -235,11 +266,16 @@ impl Pipeline {
     }
 
     fn draw_bins(&mut self, memory: &mut [u32], target: &Target, setting: &Setting) -> TileCounts {
+        if let (Some(uniform), Some([first, beyond])) = (&mut self.uniform, self.workers.rows()) {
+            uniform.drawn(first..beyond);
+        }
         let (colour, depth) = surfaces(memory, target);
-        self.level.map_or_else(TileCounts::default, |level| self.workers.draw(level, setting, colour, depth))
+        self.level
+            .map_or_else(TileCounts::default, |level| self.workers.draw(self.threads, level, setting, colour, depth))
     }
 
     fn draw_list(&mut self, memory: &mut [u32], target: &Target, setting: &Setting) -> TileCounts {
+        self.uniform = None;
         let (colour, depth) = surfaces(memory, target);
         specification::draw(setting, self.list.shapes.iter().map(|(shape, _)| shape), colour, depth)
     }
@@ -275,9 +311,9 @@ fn list(list: &mut List, assembler: &Assembler<'_>, scissor: Rectangle, range: R
 }
 
 impl Workers {
-    /// The pool if `items` are worth handing out, made when it is first needed.
-    fn pool_for(&mut self, threads: usize, items: u32) -> Option<&ThreadPool> {
-        if threads == 1 || items < 2 * SHARE {
+    /// The pool if the work is worth handing out, made when it is first needed.
+    fn pool_for(&mut self, threads: usize, worth: bool) -> Option<&ThreadPool> {
+        if threads == 1 || !worth {
             return None;
         }
         if self.pool.is_none() {
@@ -297,7 +333,7 @@ impl Workers {
         range: Range<u32>,
     ) -> (u32, GeometryCounts) {
         let count = (range.end - range.start).min(BATCH);
-        let used = if self.pool_for(threads, count).is_some() { threads } else { 1 };
+        let used = if self.pool_for(threads, count >= 2 * SHARE).is_some() { threads } else { 1 };
         self.shares.resize_with(used.max(self.shares.len()), Bins::default);
         self.shares[used..].iter_mut().for_each(|share| share.reset(size[0], size[1], setting.scissor));
         let each = count.div_ceil(used as u32);
@@ -326,15 +362,29 @@ impl Workers {
         (range.start + count, sum)
     }
 
+    /// Bands that the shares' bins hold something for: first, first beyond.
+    fn rows(&self) -> Option<[usize; 2]> {
+        self.shares.iter().filter_map(Bins::rows).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    }
+
     /// Draws what the shares' bins hold, band by band.
-    fn draw(&mut self, level: Level, setting: &Setting, colour: &mut [u32], depth: &mut [i32]) -> TileCounts {
-        let shares = &self.shares;
-        let held = shares.iter().filter_map(Bins::rows).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-        let Some([first, beyond]) = held else {
+    fn draw(
+        &mut self,
+        threads: usize,
+        level: Level,
+        setting: &Setting,
+        colour: &mut [u32],
+        depth: &mut [i32],
+    ) -> TileCounts {
+        let Some([first, beyond]) = self.rows() else {
             return TileCounts::default();
         };
-        let threads = self.pool.as_ref().map_or(1, ThreadPool::current_num_threads);
-        self.scratch.resize_with(threads, Mutex::default);
+        let worth = self.shares.iter().map(Bins::weight).sum::<u64>() >= WEIGHT;
+        self.pool_for(threads, worth);
+        let shares = &self.shares;
+        let pool = self.pool.as_ref().filter(|_| worth && beyond - first > 1);
+        let threads = pool.map_or(1, ThreadPool::current_num_threads);
+        self.scratch.resize_with(threads.max(self.scratch.len()), Mutex::default);
         let with_depth = setting.test.is_some();
         let rows = |pitch: usize| first * TILE * pitch..;
         let colour = &mut colour[rows(setting.colour_pitch)];
@@ -348,17 +398,17 @@ impl Workers {
             let mut mine = mine.lock().unwrap_or_else(PoisonError::into_inner);
             setting.draw_band(level, shares, first + band, colour, depth, &mut mine)
         };
-        match &self.pool {
-            Some(pool) if bands > 1 && with_depth => pool.install(|| {
+        match pool {
+            Some(pool) if with_depth => pool.install(|| {
                 let bands = colour.par_chunks_mut(colour_band).zip(depth.par_chunks_mut(depth_band)).take(bands);
                 bands.enumerate().map(draw).reduce(TileCounts::default, TileCounts::plus)
             }),
-            Some(pool) if bands > 1 => pool.install(|| {
+            Some(pool) => pool.install(|| {
                 let bands = colour.par_chunks_mut(colour_band).take(bands).enumerate();
                 let bands = bands.map(|(band, colour)| draw((band, (colour, &mut []))));
                 bands.reduce(TileCounts::default, TileCounts::plus)
             }),
-            _ => {
+            None => {
                 let mut depths = depth.chunks_mut(depth_band);
                 let bands = colour.chunks_mut(colour_band).take(bands);
                 let bands = bands.map(|colour| (colour, depths.next().unwrap_or(&mut [])));

@@ -24,12 +24,16 @@ pub(crate) struct VideoMemory {
     generation: u64,
     /// Words of the frame shown; host writes elsewhere cannot be seen.
     watched: Range<usize>,
+    /// Words whose contents the pipeline remembers.
+    remembered: Range<usize>,
+    /// Counts changes that others may have made there.
+    foreign: u64,
 }
 
 impl VideoMemory {
     /// `bytes` bytes of zeros. The host's pages come when they are first touched.
     pub(crate) fn new(bytes: u32) -> VideoMemory {
-        VideoMemory { words: vec![0; (bytes / 4) as usize], generation: 0, watched: 0..0 }
+        VideoMemory { words: vec![0; (bytes / 4) as usize], generation: 0, watched: 0..0, remembered: 0..0, foreign: 0 }
     }
 
     /// All words.
@@ -39,6 +43,13 @@ impl VideoMemory {
 
     /// All words, to change some of them.
     pub(crate) fn words_mut(&mut self) -> &mut [u32] {
+        self.generation += 1;
+        self.foreign += 1;
+        &mut self.words
+    }
+
+    /// All words, for the pipeline, which knows what it changes.
+    pub(crate) fn drawing(&mut self) -> &mut [u32] {
         self.generation += 1;
         &mut self.words
     }
@@ -59,7 +70,20 @@ impl VideoMemory {
         if index < self.watched.end && index + count > self.watched.start {
             self.generation += 1;
         }
+        if index < self.remembered.end && index + count > self.remembered.start {
+            self.foreign += 1;
+        }
         count
+    }
+
+    /// The pipeline remembers what these words hold.
+    pub(crate) fn remember(&mut self, words: Range<usize>) {
+        self.remembered = words;
+    }
+
+    /// Changes whenever somebody but the pipeline may have changed a remembered word.
+    pub(crate) fn foreign(&self) -> u64 {
+        self.foreign
     }
 
     /// Changes with every change that can be seen in the frame shown.
@@ -104,6 +128,20 @@ mod tests {
         memory.write(15, &[1, 1]);
         memory.write(31, &[1]);
         assert_eq!(memory.generation(), 2);
+    }
+
+    #[test]
+    fn foreign_counts_what_may_have_changed_remembered_words() {
+        let mut memory = VideoMemory::new(4096);
+        memory.remember(16..32);
+        memory.write(0, &[1; 16]);
+        memory.write(32, &[1; 16]);
+        memory.drawing()[20] = 1;
+        assert_eq!(memory.foreign(), 0);
+        memory.write(31, &[1]);
+        assert_eq!(memory.foreign(), 1);
+        memory.words_mut()[0] = 1;
+        assert_eq!(memory.foreign(), 2);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! manual as numbers; nothing is imported from the declarations they are made from.
 
 mod bitmap;
+mod clears;
 mod concurrency;
 mod counters;
 mod drawing;

@@ -116,6 +116,12 @@ impl Bins {
         &self.tiles[row * self.columns + column]
     }
 
+    /// How much there is to draw, roughly in pixels: those in bounding boxes, and a byte an equal of one.
+    #[must_use]
+    pub fn weight(&self) -> u64 {
+        self.pixels + self.bytes as u64
+    }
+
     /// Tile rows that hold something: first, first beyond; `None` if none does.
     #[must_use]
     pub fn rows(&self) -> Option<[usize; 2]> {

@@ -16,6 +16,7 @@ pub mod bins;
 pub mod kernel;
 pub mod specification;
 pub mod tile;
+pub mod uniform;
 
 use crate::probe::account::{Account, Clocks};
 use zga_abi::Counter;
@@ -25,6 +26,7 @@ use zga_firmware::checked::{Clear, Rectangle, Target};
 use crate::shading::plane::Interpolation;
 use band::Setting;
 use tile::TileCounts;
+use uniform::Uniform;
 
 /// A depth function as the three outcomes that pass, and whether passing depths are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,8 +98,8 @@ pub fn charge(counts: &TileCounts, setting: &Setting, account: &mut Account) {
     }
 }
 
-/// Clears planes of a target.
-pub fn clear(memory: &mut [u32], target: &Target, clear: &Clear, account: &mut Account) {
+/// Clears planes of a target; rows of depths that `uniform` knows to hold the value already are left alone.
+pub fn clear(memory: &mut [u32], target: &Target, clear: &Clear, uniform: Option<&Uniform>, account: &mut Account) {
     let Rectangle { x, y, right, bottom } = clear.area;
     if x >= right || y >= bottom {
         return;
@@ -118,8 +120,11 @@ pub fn clear(memory: &mut [u32], target: &Target, clear: &Clear, account: &mut A
         account.charge(Counter::CyclesZBuffer, Clocks(lines));
     }
     if let (Some(depth), Some(surface)) = (clear.depth, target.depth) {
-        for row in depths.chunks_exact_mut(surface.pitch as usize / 4).take(rows.end).skip(rows.start) {
-            row[columns.clone()].fill(depth as i32);
+        let all = depths.chunks_exact_mut(surface.pitch as usize / 4).enumerate();
+        for (y, row) in all.take(rows.end).skip(rows.start) {
+            if !uniform.is_some_and(|uniform| uniform.holds(y)) {
+                row[columns.clone()].fill(depth as i32);
+            }
         }
         account.add(Counter::ZWrites, pixels);
         account.charge(Counter::CyclesZBuffer, Clocks(lines));
