@@ -1,19 +1,22 @@
 //! A scene in a window: the monitor at the card's cable.
 //!
-//! Duties: turns mouse and keys into cameras and looks, has the card draw when something changed, and shows what
-//! scan-out puts on the cable. Inputs from: minifb, [`zga_device::Monitor`]. Outputs to: [`Session`].
+//! Duties: turns mouse and keys into cameras, looks and settings, has the card draw when something changed, and shows
+//! what scan-out puts on the cable. Inputs from: minifb, [`zga_device::Monitor`]. Outputs to: [`Session`].
 
 use std::path::PathBuf;
 use std::time::Duration;
 
 use minifb::{Key, KeyRepeat, MouseButton, MouseMode, Window, WindowOptions};
-use zga_abi::Reg;
+use zga_abi::format::{Fidelity, HiddenSurface};
 use zga_abi::packet::Opcode;
+use zga_abi::{Counter, Reg};
+use zga_driver::CardInfo;
 
 use crate::error::{Error, Result};
 use crate::picture::Picture;
-use crate::play::{Look, Session};
+use crate::play::{Look, Session, Settings};
 use crate::scene::Scene;
+use crate::table::grouped;
 
 /// Radians of a turn for each pixel that the mouse is dragged.
 const TURN_PER_PIXEL: f64 = 0.008;
@@ -22,7 +25,8 @@ const ZOOM_STEP: f64 = 0.92;
 /// Longest wait for a frame: scan-out gives one every 17 ms.
 const FRAME_WAIT: Duration = Duration::from_millis(50);
 /// What the keys do.
-const HELP: &str = "drag: orbit, wheel: zoom, D decals, W wireframe, Space animation, S save, Esc end";
+const HELP: &str =
+    "drag: orbit, wheel: zoom, P path, F fidelity, D decals, W wireframe, Space animation, S save, Esc end";
 
 /// A window for a picture of this size; none where there is no display.
 pub(crate) fn open(name: &str, size: [u32; 2]) -> Option<Window> {
@@ -46,6 +50,7 @@ pub(crate) struct Show<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Controls {
     look: Look,
+    settings: Settings,
     yaw: f64,
     pitch: f64,
     zoom: f64,
@@ -64,13 +69,24 @@ impl Show<'_> {
         let mut monitor = session.monitor();
         let driver = session.driver();
         driver.packet(Opcode::RegisterWrite, &[Reg::ScanoutControl.offset(), 1]).map_err(fault())?;
-        let mut controls =
-            Controls { look: self.look, yaw: 0.0, pitch: 0.0, zoom: 1.0, frame: 0, animated: false, help: false };
+        let mut controls = Controls {
+            look: self.look,
+            settings: *session.settings(),
+            yaw: 0.0,
+            pitch: 0.0,
+            zoom: 1.0,
+            frame: 0,
+            animated: false,
+            help: false,
+        };
         let mut shown: Option<Controls> = None;
+        let mut title = String::new();
         let mut mouse: Option<(f32, f32)> = None;
         let mut saved = 0;
         while window.is_open() && !window.is_key_down(Key::Escape) {
-            controls.keys(&window);
+            for key in window.get_keys_pressed(KeyRepeat::No) {
+                controls.press(key, session.driver().card_info());
+            }
             let at = window.get_mouse_pos(MouseMode::Pass);
             if let (Some(from), Some(to), true) = (mouse, at, window.get_mouse_down(MouseButton::Left)) {
                 controls.drag(to.0 - from.0, to.1 - from.1);
@@ -82,16 +98,20 @@ impl Show<'_> {
             if controls.animated {
                 controls.frame = controls.frame.wrapping_add(1);
             }
-            let title = controls.title(self.name);
-            if shown.is_none_or(|shown| shown.title(self.name) != title) {
-                window.set_title(&title);
-            }
             if shown != Some(controls) {
                 let mut scene = (self.scene)(controls.frame);
                 scene.camera = scene.camera.orbited(controls.yaw, controls.pitch, controls.zoom);
+                session.set(controls.settings)?;
+                session.driver().clear_counters();
                 session.draw(&scene, controls.look)?;
                 session.driver().finish().map_err(fault())?;
                 shown = Some(controls);
+                let clocks = session.driver().counters().get(Counter::CyclesTotal);
+                let told = controls.title(self.name, clocks);
+                if told != title {
+                    window.set_title(&told);
+                    title = told;
+                }
             }
             match monitor.wait_next(FRAME_WAIT) {
                 Some(frame) => {
@@ -126,15 +146,21 @@ impl Show<'_> {
 }
 
 impl Controls {
-    fn keys(&mut self, window: &Window) {
-        for key in window.get_keys_pressed(KeyRepeat::No) {
-            match key {
-                Key::D => self.look.decals = !self.look.decals,
-                Key::W => self.look.wireframe = !self.look.wireframe,
-                Key::Space => self.animated = !self.animated,
-                Key::H => self.help = !self.help,
-                _ => {}
+    /// What a key does on this card.
+    fn press(&mut self, key: Key, card: &CardInfo) {
+        match key {
+            Key::D => self.look.decals = !self.look.decals,
+            Key::W => self.look.wireframe = !self.look.wireframe,
+            Key::P => self.settings.hidden_surface = next_path(self.settings.hidden_surface, card),
+            Key::F if card.has_clocked_model() => {
+                self.settings.fidelity = match self.settings.fidelity {
+                    Fidelity::Functional => Fidelity::Clocked,
+                    Fidelity::Clocked => Fidelity::Functional,
+                };
             }
+            Key::Space => self.animated = !self.animated,
+            Key::H => self.help = !self.help,
+            _ => {}
         }
     }
 
@@ -143,41 +169,93 @@ impl Controls {
         self.pitch = (self.pitch + f64::from(down) * TURN_PER_PIXEL).clamp(-3.0, 3.0);
     }
 
-    fn title(&self, name: &str) -> String {
+    /// The window's title; `clocks`: what the frame cost.
+    fn title(&self, name: &str, clocks: u64) -> String {
         if self.help {
             return format!("ZGA: {name}: {HELP}");
         }
+        let path = self.settings.hidden_surface.name();
+        let clocked = if self.settings.fidelity == Fidelity::Clocked { ", clocked" } else { "" };
         let decals = if self.look.decals { "" } else { ", without decals" };
         let wires = if self.look.wireframe { ", wireframe" } else { "" };
-        format!("ZGA: {name}{decals}{wires} (H for help)")
+        format!("ZGA: {name}, {path} path{clocked}{decals}{wires}, {} clocks (H for help)", grouped(clocks))
     }
+}
+
+/// The path after this one, among those that the card has.
+fn next_path(path: HiddenSurface, card: &CardInfo) -> HiddenSurface {
+    let paths = HiddenSurface::ALL.iter().copied().filter(|path| card.has_path(*path));
+    let mut after = paths.cycle().skip_while(|known| *known != path).skip(1);
+    // A card that has not even this one has no other: cycle() would look for ever.
+    if card.has_path(path) { after.next().unwrap_or(path) } else { path }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use zga_abi::Effects;
+    use zga_abi::format::DepthFormat;
+    use zga_driver::{SystolicVariant, ZaSettings};
 
-    const START: Controls = Controls {
-        look: Look { decals: true, wireframe: false },
-        yaw: 0.0,
-        pitch: 0.0,
-        zoom: 1.0,
-        frame: 0,
-        animated: false,
-        help: false,
-    };
+    fn start() -> Controls {
+        let settings = Settings {
+            hidden_surface: HiddenSurface::ZBuffer,
+            fidelity: Fidelity::Functional,
+            depth: DepthFormat::default(),
+            subpixel_bits: 8,
+            za: ZaSettings::default(),
+            systolic: SystolicVariant::default(),
+            tile_size: [8, 8],
+        };
+        let look = Look { decals: true, wireframe: false };
+        Controls { look, settings, yaw: 0.0, pitch: 0.0, zoom: 1.0, frame: 0, animated: false, help: false }
+    }
+
+    fn card(paths: u32) -> CardInfo {
+        let effects = Effects::DEPTH;
+        CardInfo { major: 1, minor: 0, effects, paths, video_memory: 0, za_ram: 0, fifo_words: 0 }
+    }
 
     #[test]
     fn title_tells_what_is_switched_and_the_keys() {
-        assert_eq!(START.title("teapot"), "ZGA: teapot (H for help)");
-        let bare = Controls { look: Look { decals: false, wireframe: true }, ..START };
-        assert_eq!(bare.title("teapot"), "ZGA: teapot, without decals, wireframe (H for help)");
-        assert!(Controls { help: true, ..START }.title("teapot").contains("Space animation"));
+        assert_eq!(start().title("teapot", 1234), "ZGA: teapot, zbuffer path, 1 234 clocks (H for help)");
+        let mut bare = Controls { look: Look { decals: false, wireframe: true }, ..start() };
+        bare.settings.fidelity = Fidelity::Clocked;
+        assert_eq!(
+            bare.title("teapot", 5),
+            "ZGA: teapot, zbuffer path, clocked, without decals, wireframe, 5 clocks (H for help)"
+        );
+        assert!(Controls { help: true, ..start() }.title("teapot", 5).contains("P path, F fidelity"));
+    }
+
+    #[test]
+    fn press_p_goes_round_the_paths_that_the_card_has() {
+        let round = |paths: u32| {
+            let mut controls = start();
+            [(); 3].map(|()| {
+                controls.press(Key::P, &card(paths));
+                controls.settings.hidden_surface.name()
+            })
+        };
+        assert_eq!(round(0b1101), ["systolic", "tile", "zbuffer"]);
+        assert_eq!(round(0b0001), ["zbuffer"; 3]);
+        assert_eq!(round(0b0110), ["zbuffer"; 3], "there is no way on from a path that is not there");
+    }
+
+    #[test]
+    fn press_f_switches_fidelity_where_there_is_a_clocked_model() {
+        let mut controls = start();
+        controls.press(Key::F, &card(0b0001));
+        assert_eq!(controls.settings.fidelity, Fidelity::Functional);
+        controls.press(Key::F, &card(0b0011));
+        assert_eq!(controls.settings.fidelity, Fidelity::Clocked);
+        controls.press(Key::F, &card(0b0011));
+        assert_eq!(controls.settings.fidelity, Fidelity::Functional);
     }
 
     #[test]
     fn drag_to_the_right_turns_the_camera_to_the_left() {
-        let mut controls = START;
+        let mut controls = start();
         controls.drag(10.0, 2000.0);
         assert!(controls.yaw < 0.0);
         assert!(controls.pitch <= 3.0);

@@ -226,6 +226,74 @@ fn bench_prints_the_line_of_the_harness() {
 }
 
 #[test]
+fn every_path_makes_the_same_picture_and_depths_and_reports_its_own_cost() {
+    let folder = Folder::new("paths");
+    folder.write("scene.json", SCENE);
+    let draw = |path: &str, flags: &[&str]| {
+        let common = ["show", "scene.json", "--hidden-surface", path, "--out", "a.png", "--report", "a.json"];
+        let run = folder.zga(&[&common[..], flags].concat());
+        assert_eq!(run.code(), Some(0), "{path} {flags:?}: {}", run.err());
+        let report: Value = serde_json::from_slice(&folder.read("a.json")).expect("JSON");
+        assert_eq!(report["hidden_surface"], path);
+        report
+    };
+    let depth = |path: &str| {
+        let run = folder.zga(&["show", "scene.json", "--hidden-surface", path, "--depth", "d.png"]);
+        assert_eq!(run.code(), Some(0), "{path}: {}", run.err());
+        folder.read("d.png")
+    };
+    let (plain, plain_depth) = (draw("zbuffer", &[]), depth("zbuffer"));
+    for (path, counter, flags) in [
+        ("za", "za.words_written", &["--za-block", "8x8", "--za-prediction", "plane"][..]),
+        ("systolic", "systolic.tokens", &["--systolic-variant", "zero,merged,value"]),
+        ("tile", "tile.visited", &["--tile-size", "16x8"]),
+    ] {
+        let functional = draw(path, flags);
+        assert_eq!(functional["frame_hash"], plain["frame_hash"], "{path}");
+        assert!(functional["counters"][counter].as_u64() > Some(0), "{path}: {functional:#}");
+        assert!(functional["cycles"][path].as_u64() > Some(0), "{path}: {functional:#}");
+        assert_eq!((&plain["counters"][counter], &plain["cycles"][path]), (&0.into(), &0.into()));
+        let powered = functional["effects"]["powered"].as_array().expect("a list");
+        assert!(powered.contains(&path.into()) && !powered.contains(&"z_buffer".into()), "{path}: {powered:?}");
+        let clocked = draw(path, &[flags, &["--fidelity", "clocked"]].concat());
+        let same = ["frame_hash", "cycles", "counters", "card"].map(|field| functional[field] == clocked[field]);
+        assert_eq!(same, [true; 4], "{path}: {functional:#}\n{clocked:#}");
+        assert_eq!(depth(path), plain_depth, "{path}");
+    }
+}
+
+#[test]
+fn pixel_and_trace_work_on_every_path() {
+    let folder = Folder::new("path-pixel");
+    folder.write("scene.json", SCENE);
+    for path in ["za", "systolic", "tile"] {
+        let card = ["--hidden-surface", path];
+        let run = folder.zga(&[&["pixel", "scene.json", "20", "24"][..], &card].concat());
+        assert_eq!(run.code(), Some(0), "{path}: {}", run.err());
+        assert!(run.out().ends_with("Shown #ffffff, depth 12288 of 65535\n"), "{path}: {}", run.out());
+        let record = folder.zga(&[&["trace", "record", "t.zga", "scene.json", "--frames", "2"][..], &card].concat());
+        assert_eq!(record.code(), Some(0), "{path}: {}", record.err());
+        let replay = folder.zga(&["trace", "replay", "t.zga"]);
+        assert_eq!(replay.code(), Some(0), "{path}: {} {}", replay.out(), replay.err());
+    }
+}
+
+#[test]
+fn bench_takes_path_fidelity_and_depth_bits() {
+    let folder = Folder::new("bench-paths");
+    let dump = |flags: &[&str]| {
+        let run = folder.zga(&[&["bench", "S3", "--size", "64x64", "--secs", "0", "--dump", "d"], flags].concat());
+        assert_eq!(run.code(), Some(0), "{flags:?}: {}", run.err());
+        folder.read("d")
+    };
+    let plain = dump(&[]);
+    for path in ["za", "systolic", "tile"] {
+        assert!(dump(&["--path", path]) == plain, "{path}");
+        assert!(dump(&["--path", path, "--fidelity", "clocked", "--depth-bits", "16"]) == plain, "{path}, clocked");
+    }
+}
+
+#[test]
 fn bad_scenes_name_file_and_field() {
     let folder = Folder::new("bad");
     let fault = |name: &str, text: &str| {
@@ -238,8 +306,8 @@ fn bad_scenes_name_file_and_field() {
     assert!(fault("a.json", "{").contains("a.json:1:"));
     let value = fault("b.json", &SCENE.replace("[16, 16, 32, 255]", "[16, 16, 32, 256]"));
     assert!(value.contains("b.json: background[3]: expected"), "{value}");
-    let path = fault("c.json", &SCENE.replace("\"depth_bits\": 16", "\"hidden_surface\": \"tile\""));
-    assert!(path.contains("c.json: card.hidden_surface: tile is not possible: this card has"), "{path}");
+    let path = fault("c.json", &SCENE.replace("\"depth_bits\": 16", "\"antialias\": \"8x8\""));
+    assert!(path.contains("c.json: card.antialias: 8x8 is not possible: this card has"), "{path}");
     let mesh = fault("d.obj", "v 0 0 0\nf 1 2 3\n");
     assert!(mesh.contains("d.obj: line 2"), "{mesh}");
 }

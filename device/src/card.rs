@@ -18,6 +18,7 @@ use crate::probe::account::{Account, Clocks};
 use crate::probe::{Probe, snapshot};
 use crate::scanout::Scanout;
 use parking_lot::MutexGuard;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::SeqCst;
 use zga_abi::bus::INTERRUPT_FENCE;
@@ -26,7 +27,12 @@ use zga_firmware::checked::{Clear, Copy, Draw, DrawState, Fill, Rows, Target, Wo
 use zga_firmware::{Hardware, Processor, ProcessorState, Stopped};
 
 /// Units that [`Pipeline`] stands for.
-const PIPELINE: Units = Units::GEOMETRY.union(Units::Z_BUFFER).union(Units::SHADING);
+const PIPELINE: Units = Units::GEOMETRY
+    .union(Units::Z_BUFFER)
+    .union(Units::ZA)
+    .union(Units::SYSTOLIC)
+    .union(Units::TILE)
+    .union(Units::SHADING);
 /// WATCHDOG counts in units of this many clocks.
 const WATCHDOG_UNIT: u64 = 1 << 20;
 
@@ -101,6 +107,13 @@ impl Board {
                 Ok(Request::Restore(state, done)) => {
                     let _ = done.send(snapshot::restore(self, &state));
                 }
+                Ok(Request::Record(waves, done)) => {
+                    self.blocks.pipeline.record(waves);
+                    let _ = done.send(());
+                }
+                Ok(Request::TakeRecorded(answer)) => {
+                    let _ = answer.send(self.blocks.pipeline.take_recorded());
+                }
                 Ok(Request::PowerOff) | Err(_) => return false,
             }
         }
@@ -131,6 +144,22 @@ impl Board {
         backplane.interrupts.set(0, 0);
         backplane.in_scene.store(false, SeqCst);
         backplane.control.reset_done();
+    }
+}
+
+/// No bytes.
+const NOTHING: Range<u64> = 0..0;
+
+/// Asks whether a packet that has taken so many clocks is to stop.
+fn watch(backplane: &Backplane) -> impl Fn(Clocks) -> Option<Stopped> {
+    let limit = match backplane.registers.get(Reg::Watchdog) {
+        0 => u64::MAX,
+        units => u64::from(units) * WATCHDOG_UNIT,
+    };
+    move |spent| match (backplane.control.stopping(), spent.0 > limit) {
+        (true, _) => Some(Stopped::Reset),
+        (_, true) => Some(Stopped::Watchdog),
+        _ => None,
     }
 }
 
@@ -181,13 +210,15 @@ impl Hardware for Wiring<'_> {
     }
 
     fn begin_scene(&mut self, target: &Target) {
-        self.blocks.probe.begin_scene(target);
-        self.blocks.pipeline.begin_scene(target);
+        let Blocks { pipeline, probe, account, .. } = &mut *self.blocks;
+        probe.begin_scene();
+        pipeline.begin_scene(&mut self.memory, target, account);
     }
 
     fn end_scene(&mut self) -> Result<(), Stopped> {
+        let stop = watch(self.backplane);
         let Blocks { pipeline, bitmap, scanout, account, powered, .. } = &mut *self.blocks;
-        let ended = pipeline.end_scene(self.memory.drawing(), account);
+        let ended = pipeline.end_scene(&mut self.memory, account, &stop);
         // Begin scene takes all power away. Memory goes back only now, from what the scene did not
         // call for: a unit that every scene needs keeps its memory from one to the next.
         if !powered.intersects(PIPELINE) {
@@ -204,15 +235,13 @@ impl Hardware for Wiring<'_> {
 
     fn clear(&mut self, clear: &Clear) {
         let Blocks { pipeline, probe, account, .. } = &mut *self.blocks;
-        probe.clear(&self.backplane.registers, self.memory.words(), clear);
-        let foreign = self.memory.foreign();
-        pipeline.clear(self.memory.drawing(), foreign, clear, account);
-        self.memory.remember(pipeline.remembered());
+        probe.clear(&self.backplane.registers, clear, |x, y| pipeline.depth_at(&self.memory, x, y));
+        pipeline.clear(&mut self.memory, clear, account);
         self.store_records();
     }
 
     fn draw(&mut self, state: &DrawState, draw: &Draw<'_>) -> Result<(), Stopped> {
-        let Backplane { registers, control, .. } = self.backplane;
+        let Backplane { registers, .. } = self.backplane;
         let Blocks { pipeline, probe, account, .. } = &mut *self.blocks;
         let geometry = GeometryRegisters {
             object_eye: registers.floats(Reg::ObjectEye),
@@ -220,17 +249,9 @@ impl Hardware for Wiring<'_> {
             eye_clip: registers.floats(Reg::EyeClip),
             viewport: registers.floats(Reg::Viewport),
         };
-        let limit = match registers.get(Reg::Watchdog) {
-            0 => u64::MAX,
-            units => u64::from(units) * WATCHDOG_UNIT,
-        };
-        let stop = |spent: Clocks| match (control.stopping(), spent.0 > limit) {
-            (true, _) => Some(Stopped::Reset),
-            (_, true) => Some(Stopped::Watchdog),
-            _ => None,
-        };
-        let watch = probe.watch(registers);
-        let drawn = pipeline.draw(self.memory.drawing(), &geometry, state, draw, watch, account, &stop);
+        let stop = watch(self.backplane);
+        let probed = probe.watch(registers);
+        let drawn = pipeline.draw(&mut self.memory, &geometry, state, draw, probed, account, &stop);
         self.store_records();
         drawn
     }
@@ -245,20 +266,27 @@ impl Hardware for Wiring<'_> {
     }
 
     fn fill(&mut self, fill: &Fill) {
-        fill::fill(self.memory.words_mut(), fill, &mut self.blocks.account);
+        let account = &mut self.blocks.account;
+        let memory = self.memory.using(NOTHING, fill.surface.bytes(), account);
+        fill::fill(memory, fill, account);
     }
 
     fn copy(&mut self, copy: &Copy) {
-        self.blocks.bitmap.copy(self.memory.words_mut(), copy, &mut self.blocks.account);
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        let memory = self.memory.using(copy.source.bytes(), copy.destination.bytes(), account);
+        bitmap.copy(memory, copy, account);
     }
 
     fn upload(&mut self, rows: &Rows, words: &[u32]) {
-        transfer::upload(self.memory.words_mut(), rows, words, &mut self.blocks.account);
+        let account = &mut self.blocks.account;
+        let memory = self.memory.using(NOTHING, rows.bytes(), account);
+        transfer::upload(memory, rows, words, account);
     }
 
     fn download(&mut self, rows: &Rows, destination: u32) {
         let Blocks { bitmap, account, .. } = &mut *self.blocks;
-        bitmap.download(self.memory.words_mut(), rows, destination, account);
+        let memory = self.memory.using(rows.bytes(), rows.run_at(destination), account);
+        bitmap.download(memory, rows, destination, account);
     }
 
     fn fence(&mut self, sequence: u32) {

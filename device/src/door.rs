@@ -7,12 +7,14 @@ use crate::card::{Blocks, Board};
 use crate::error::CardError;
 use crate::frontend::Frontend;
 use crate::frontend::ring::RingFetch;
+use crate::hidden::systolic::Waves;
 use crate::pipeline::{Kernel, Pipeline, PipelineOptions};
 use crate::probe::Probe;
 use crate::probe::account::Account;
 use crate::probe::snapshot::Snapshot;
 use crate::scanout::Scanout;
 use crate::scanout::monitor::Monitor;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::SeqCst;
 use std::thread::JoinHandle;
@@ -111,6 +113,25 @@ impl Card {
     /// [`CardError::PoweredOff`] when the card's thread is gone.
     pub fn snapshot(&self) -> Result<Snapshot, CardError> {
         self.backplane.control.save().map(Snapshot::new)
+    }
+
+    /// Records the next scene that the clocked systolic array draws (HIDDEN_SURFACE 2, FIDELITY 1): of scan line
+    /// `line` the clocks `clocks`, counted from the clock in which the line's first token enters, and the
+    /// processing elements `elements`.
+    ///
+    /// # Errors
+    /// [`CardError::PoweredOff`] when the card's thread is gone.
+    pub fn record_waves(&self, line: u32, clocks: Range<u64>, elements: Range<u32>) -> Result<(), CardError> {
+        self.backplane.control.record(Waves::new(line, clocks, elements))
+    }
+
+    /// The waveform recorded last, as the text of a VCD file, and given away with that; `None` when no scene
+    /// was recorded since.
+    ///
+    /// # Errors
+    /// [`CardError::PoweredOff`] when the card's thread is gone.
+    pub fn take_waves(&self) -> Result<Option<Vec<u8>>, CardError> {
+        self.backplane.control.take_recorded()
     }
 
     /// Puts the card into the state of a snapshot and lets it go on from there. What it was doing is

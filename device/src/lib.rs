@@ -86,6 +86,18 @@ mod probe;
 mod scanout;
 mod shading;
 
+/// What the units of the hidden-surface paths are built from, for reports.
+pub mod cost {
+    /// Systolic array: adders, comparators, register bits and gates of its variants.
+    pub mod systolic {
+        pub use crate::hidden::systolic::gates::{Cost, Variant, Widths, clamp, element};
+    }
+    /// Tile unit: register bits and buffer bytes.
+    pub mod tile {
+        pub use crate::hidden::tile::storage::*;
+    }
+}
+
 pub use bus::CardBus;
 pub use door::{Card, CardOptions};
 pub use error::CardError;

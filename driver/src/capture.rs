@@ -85,7 +85,8 @@ impl<B: Bus> Driver<B> {
     /// Takes the Z buffer of a target, dense rows, as it is after all work so far.
     ///
     /// # Errors
-    /// [`DriverError::NoDepthBuffer`], or as [`Driver::capture`].
+    /// [`DriverError::NoDepthBuffer`]; [`DriverError::DepthNotKept`] after a scene that left no depths behind, see
+    /// [`Driver::set_keep_depth`]; or as [`Driver::capture`].
     pub fn capture_depth(&mut self, target: &Target) -> Result<Vec<u32>, DriverError> {
         if self.scene.is_some() {
             return Err(DriverError::InsideScene { call: "capture_depth" });
@@ -94,6 +95,9 @@ impl<B: Bus> Driver<B> {
         let (pitch, rows) = (state.depth_pitch, state.options.height);
         let from = state.depth.as_ref().map(Allocation::address);
         let from = from.ok_or(DriverError::NoDepthBuffer { id: Self::target_id(target) })?;
+        if let Some(path) = state.depth_lost {
+            return Err(DriverError::DepthNotKept { id: Self::target_id(target), path: path.name() });
+        }
         let count = target.width() as usize * rows as usize;
         let address = self.capture_area(count)?;
         self.encode(Opcode::Download, &[&[from, pitch, target.width(), rows, address]])?;

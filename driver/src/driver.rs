@@ -55,6 +55,8 @@ pub struct Driver<B: Bus> {
     pub(crate) capture_area: Option<Allocation>,
     pub(crate) shown: Option<(u32, u32)>,
     pub(crate) probe_area: Option<Allocation>,
+    /// The books of Za RAM.
+    pub(crate) za_ram: VideoMemory,
     memory: VideoMemory,
     /// Freed, but the card may still use it until the fence with this number.
     leaving: Vec<(u32, Allocation)>,
@@ -115,6 +117,7 @@ impl<B: Bus> Driver<B> {
             capture_area: None,
             shown: None,
             probe_area: None,
+            za_ram: VideoMemory::new(info.za_ram),
             memory,
             leaving: Vec::new(),
             warnings: Vec::new(),

@@ -115,6 +115,33 @@ pub enum DriverError {
         /// Number of the target.
         id: u32,
     },
+    /// The last scene on the target left no depths behind.
+    #[error("target {id} has no depths of its last scene: the {path} path kept none, see set_keep_depth")]
+    DepthNotKept {
+        /// Number of the target.
+        id: u32,
+        /// The path that it was drawn on.
+        path: &'static str,
+    },
+    /// Za RAM cannot hold the words of a frame.
+    #[error(
+        "Za blocks of {} x {} pixels are too small: a frame of {width} x {height} pixels needs {needed} bytes of Za \
+         RAM, this card has {has}",
+        block[0],
+        block[1]
+    )]
+    ZaRamTooSmall {
+        /// Width of the target, pixels.
+        width: u32,
+        /// Height of the target, pixels.
+        height: u32,
+        /// Width and height of a block, pixels.
+        block: [u32; 2],
+        /// Bytes that the words of a frame take.
+        needed: u64,
+        /// Bytes of Za RAM.
+        has: u32,
+    },
     /// No frame is shown yet.
     #[error("no frame is shown: call present before capture")]
     NothingShown,

@@ -53,10 +53,16 @@ impl CardInfo {
     pub const fn has_path(&self, path: HiddenSurface) -> bool {
         self.paths >> path.code() & 1 == 1
     }
+
+    /// Whether one of its paths has a clocked model: all but the plain Z buffer do.
+    #[must_use]
+    pub const fn has_clocked_model(&self) -> bool {
+        self.has_path(HiddenSurface::Za) || self.has_path(HiddenSurface::Systolic) || self.has_path(HiddenSurface::Tile)
+    }
 }
 
 /// All counters at one moment.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     values: Vec<u64>,
 }

@@ -2,7 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`Driver`] | the card: opening, submission, fences, memory; scenes, state, drawing, capture, probe |
+//! | [`Driver`] | the card: opening, submission, fences, memory; scenes, state, hidden-surface paths, drawing, capture, probe |
 //! | [`view`] | cameras and the decal transform |
 //! | [`memory`] | the video memory allocator |
 //! | [`bus`] | a bus model for tests, a bus that records |
@@ -56,6 +56,7 @@ mod capture;
 mod draw;
 mod driver;
 mod error;
+mod hidden;
 mod info;
 pub mod memory;
 mod probe;
@@ -70,6 +71,7 @@ pub use capture::{Frame, frame_hash, hash_text};
 pub use draw::{Curve, MeshBuffer, Vertex};
 pub use driver::{Driver, DriverOptions};
 pub use error::DriverError;
+pub use hidden::{SystolicVariant, ZaSettings};
 pub use info::{CardInfo, Counters};
 pub use memory::{Alignment, Allocation};
 pub use probe::PixelHistory;

@@ -3,9 +3,10 @@
 use glam::DMat4;
 use zga_abi::Effects;
 use zga_abi::bus::Bus;
-use zga_abi::format::{DepthFunction, HiddenSurface};
+use zga_abi::format::DepthFunction;
 use zga_abi::registers::Reg;
 
+use crate::hidden::HiddenState;
 use crate::view::{Camera, Decal, Matrix, camera, finite};
 use crate::{DecalInfo, Driver, DriverError, Target, Warning};
 
@@ -35,7 +36,7 @@ pub(crate) struct State {
     pub decal: Option<f64>,
     pub depth_function: DepthFunction,
     pub depth_write: bool,
-    pub hidden_surface: HiddenSurface,
+    pub hidden: HiddenState,
     pub subpixel_bits: u32,
     pub scissor: [u32; 2],
     pub material: u32,
@@ -54,7 +55,7 @@ impl State {
             decal: None,
             depth_function: DepthFunction::Less,
             depth_write: true,
-            hidden_surface: HiddenSurface::ZBuffer,
+            hidden: HiddenState::new(),
             subpixel_bits: 8,
             scissor: NO_SCISSOR,
             material: u32::MAX,
@@ -111,22 +112,6 @@ impl<B: Bus> Driver<B> {
     /// Whether a passing fragment's depth is stored; true after opening.
     pub const fn set_depth_write(&mut self, write: bool) {
         self.state.depth_write = write;
-    }
-
-    /// Sets who decides visibility, from the next begin scene on; the plain Z buffer after opening.
-    ///
-    /// # Errors
-    /// [`DriverError::Unsupported`] if the card has not this path.
-    pub fn set_hidden_surface(&mut self, path: HiddenSurface) -> Result<(), DriverError> {
-        if !self.info.has_path(path) {
-            return Err(DriverError::Unsupported {
-                what: path.name(),
-                register: "CAPABILITY_PATHS",
-                found: self.info.paths,
-            });
-        }
-        self.state.hidden_surface = path;
-        Ok(())
     }
 
     /// Sets the bits of a pixel that coordinates are snapped to, 4 or 8, from the next begin scene on; 8
@@ -194,6 +179,12 @@ impl<B: Bus> Driver<B> {
         Ok(Decal::new(&self.state.camera, options.width, slope, format)?.info)
     }
 
+    /// Whether the scissor leaves all of a target of this size in reach.
+    pub(crate) const fn scissor_leaves_all(&self, width: u32, height: u32) -> bool {
+        let [minimum, maximum] = self.state.scissor;
+        minimum == 0 && maximum & 0xFFFF >= width && maximum >> 16 >= height
+    }
+
     /// Sends the state a clear needs.
     pub(crate) fn prepare_clear(&mut self) -> Result<(), DriverError> {
         self.adopt_recovered();
@@ -209,6 +200,7 @@ impl<B: Bus> Driver<B> {
         self.compose_matrices(width, height, depth)?;
         let state = &self.state;
         let tests_depth = depth.is_some() && (state.depth_function != DepthFunction::Always || state.depth_write);
+        let begins_far = tests_depth && !scene.depth_known;
         let mut effects = Effects::empty();
         effects.set(Effects::DEPTH, tests_depth);
         effects.set(Effects::GOURAUD, gouraud);
@@ -220,6 +212,9 @@ impl<B: Bus> Driver<B> {
         // EFFECTS to SCISSOR_MAXIMUM are neighbours.
         for (register, word) in DRAW_STATE.into_iter().zip(words) {
             self.registers.want(register, &[word]);
+        }
+        if begins_far {
+            self.warn(Warning::DepthBeginsFar { path: scene.path });
         }
         self.send_registers()
     }

@@ -1,10 +1,11 @@
 //! Targets, scenes and presenting.
 
 use zga_abi::bus::Bus;
-use zga_abi::format::{DepthFormat, PixelFormat};
+use zga_abi::format::{DepthFormat, HiddenSurface, PixelFormat};
 use zga_abi::packet::{CLEAR_COLOUR, CLEAR_DEPTH, Opcode, header};
 use zga_abi::registers::Reg;
 
+use crate::hidden::ZaAreas;
 use crate::memory::{Alignment, Allocation};
 use crate::{Driver, DriverError};
 
@@ -68,6 +69,16 @@ pub(crate) struct TargetState {
     pitch: u32,
     pub depth: Option<Allocation>,
     pub depth_pitch: u32,
+    pub za: ZaAreas,
+    /// The path of the last scene, if that scene left no depths behind.
+    pub depth_lost: Option<HiddenSurface>,
+}
+
+impl TargetState {
+    /// Number of frame buffers.
+    pub const fn frames(&self) -> usize {
+        self.buffers.len()
+    }
 }
 
 /// The scene that is open.
@@ -77,6 +88,9 @@ pub(crate) struct Scene {
     pub width: u32,
     pub height: u32,
     pub depth: Option<DepthFormat>,
+    pub path: HiddenSurface,
+    /// It has a Z buffer, or all depth was cleared in it.
+    pub depth_known: bool,
     /// Its begin was refused: nothing can be drawn until it ends.
     pub lost: bool,
 }
@@ -125,7 +139,9 @@ impl<B: Bus> Driver<B> {
         let depth_pitch = if depth.is_some() { depth_pitch } else { 0 };
         let id = self.next_target;
         self.next_target = id.wrapping_add(1);
-        self.targets.insert(id, TargetState { options, buffers: taken, back: 0, pitch, depth, depth_pitch });
+        let (za, depth_lost) = (ZaAreas::default(), None);
+        let state = TargetState { options, buffers: taken, back: 0, pitch, depth, depth_pitch, za, depth_lost };
+        self.targets.insert(id, state);
         Ok(Target { id, width, height })
     }
 
@@ -147,6 +163,7 @@ impl<B: Bus> Driver<B> {
             self.send_registers()?;
         }
         if let Some(state) = self.targets.remove(&target.id) {
+            self.free_za_words(state.za)?;
             for surface in state.buffers.into_iter().chain(state.depth) {
                 self.free(surface)?;
             }
@@ -157,31 +174,37 @@ impl<B: Bus> Driver<B> {
     /// Begins a scene: the draws that follow go to `target`, to the frame buffer that is not shown.
     ///
     /// # Errors
-    /// [`DriverError::InsideScene`], [`DriverError::UnknownTarget`], or as [`Driver::flush`].
+    /// [`DriverError::InsideScene`], [`DriverError::UnknownTarget`], [`DriverError::ZaRamTooSmall`] on the Za
+    /// path, or as [`Driver::flush`].
     pub fn begin_scene(&mut self, target: &Target) -> Result<(), DriverError> {
         if self.scene.is_some() {
             return Err(DriverError::InsideScene { call: "begin_scene" });
         }
         self.adopt_recovered();
-        let state = self.targets.get(&target.id).ok_or(DriverError::UnknownTarget { id: target.id })?;
+        let frame = self.target_state(target)?.back;
+        self.want_path(target.id, frame)?;
+        let (path, uses_z_buffer) = (self.state.hidden.surface, self.state.hidden.uses_z_buffer());
+        let state = self.targets.get_mut(&target.id).ok_or(DriverError::UnknownTarget { id: target.id })?;
+        state.depth_lost = (!uses_z_buffer).then_some(path);
         let TargetOptions { width, height, pixel_format, depth, .. } = state.options;
-        let base = state.buffers[state.back].address();
+        let base = state.buffers[frame].address();
         self.registers.want(Reg::TargetSize, &[size_word(width, height)]);
         self.registers.want(Reg::ColourBase, &[base]);
         self.registers.want(Reg::ColourPitch, &[state.pitch]);
         self.registers.want(Reg::ColourFormat, &[pixel_format.code()]);
-        self.registers.want(Reg::DepthPitch, &[state.depth_pitch]);
+        self.registers.want(Reg::DepthPitch, &[if uses_z_buffer { state.depth_pitch } else { 0 }]);
         if let (Some(format), Some(surface)) = (depth, &state.depth) {
-            self.registers.want(Reg::DepthBase, &[surface.address()]);
+            if uses_z_buffer {
+                self.registers.want(Reg::DepthBase, &[surface.address()]);
+            }
             self.registers.want(Reg::DepthFormat, &[format.code()]);
         }
-        self.registers.want(Reg::HiddenSurface, &[self.state.hidden_surface.code()]);
         self.registers.want(Reg::SubpixelBits, &[self.state.subpixel_bits]);
         if self.state.composed_for != (width, height) {
             self.state.composed_for = (width, height);
             self.state.matrices_changed();
         }
-        self.scene = Some(Scene { id: target.id, width, height, depth, lost: false });
+        self.scene = Some(Scene { id: target.id, width, height, depth, path, depth_known: uses_z_buffer, lost: false });
         let registers = self.send_registers();
         registers.and(self.encode(Opcode::BeginScene, &[]))
     }
@@ -206,6 +229,10 @@ impl<B: Bus> Driver<B> {
         }
         if planes == 0 {
             return Ok(());
+        }
+        let clears_all = self.scissor_leaves_all(scene.width, scene.height);
+        if let (Some(open), true) = (&mut self.scene, clears_all && planes & CLEAR_DEPTH != 0) {
+            open.depth_known = true;
         }
         let colour = u32::from_le_bytes(colour.unwrap_or_default());
         let state = self.prepare_clear();

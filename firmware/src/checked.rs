@@ -3,8 +3,12 @@
 //! Invariants hold by construction in [`crate::Processor`]: every address range lies in video
 //! memory, every alignment is right, every enumeration has a meaning. Units do not check again.
 
+use core::ops::Range;
 use zga_abi::Effects;
-use zga_abi::format::{DepthFormat, DepthFunction, HiddenSurface, PixelFormat, Topology};
+use zga_abi::format::{
+    DepthFormat, DepthFunction, EndTest, Fidelity, HiddenSurface, PixelFormat, TokenColour, TokenPorts, Topology,
+    ZaPrediction,
+};
 
 /// A rectangle of pixels: `x`, `y` inclusive, `right`, `bottom` exclusive.
 ///
@@ -41,6 +45,15 @@ pub struct Surface {
     pub format: PixelFormat,
 }
 
+impl Surface {
+    /// From its first byte to the first beyond its last row.
+    #[must_use]
+    pub const fn bytes(&self) -> Range<u64> {
+        let rows = (self.height as u64 - 1) * self.pitch as u64 + self.width as u64 * self.format.bytes() as u64;
+        self.base as u64..self.base as u64 + rows
+    }
+}
+
 /// Depths in video memory, one 32-bit word a pixel; the size is that of the target.
 ///
 /// # Invariants
@@ -67,12 +80,86 @@ pub struct Target {
     pub subpixel_bits: u32,
     /// Who decides visibility.
     pub hidden_surface: HiddenSurface,
+    /// How units with a clocked model are simulated.
+    pub fidelity: Fidelity,
+    /// Za unit; on the Za path the frame's words lie in Za RAM.
+    pub za: ZaSetting,
+    /// Systolic array.
+    pub systolic: SystolicSetting,
+    /// Width and height of a tile of the tile unit, pixels: 4, 8, 16, 32 or 64.
+    pub tile: [u32; 2],
+}
+
+impl Target {
+    /// Depth can be tested and cleared: there is a Z buffer, or the path keeps depths in its own registers.
+    #[must_use]
+    pub const fn has_depth(&self) -> bool {
+        self.depth.is_some() || self.is_sorted()
+    }
+
+    /// The path sorts a scene before it decides what is seen: it keeps depths in registers of its own.
+    #[must_use]
+    pub const fn is_sorted(&self) -> bool {
+        matches!(self.hidden_surface, HiddenSurface::Systolic | HiddenSurface::Tile)
+    }
+}
+
+/// The Za unit's registers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ZaSetting {
+    /// First word in Za RAM, a multiple of 16.
+    pub base: u32,
+    /// Width and height of a block, pixels, each 1..=16384.
+    pub block: [u32; 2],
+    /// How the least depth of a primitive in a block is predicted.
+    pub prediction: ZaPrediction,
+    /// Blocks behind the prediction are bypassed.
+    pub bypass: bool,
+}
+
+impl Default for ZaSetting {
+    /// As published: blocks of 32 pixels of a row, prediction over the length of a block.
+    fn default() -> Self {
+        ZaSetting { base: 0, block: [32, 1], prediction: ZaPrediction::BlockLength, bypass: true }
+    }
+}
+
+impl ZaSetting {
+    /// Blocks across and down a picture of `width` x `height` pixels; those at the edges are cut by it.
+    #[must_use]
+    pub const fn blocks(&self, width: u32, height: u32) -> [u32; 2] {
+        [width.div_ceil(self.block[0]), height.div_ceil(self.block[1])]
+    }
+}
+
+/// The variant of the systolic array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SystolicSetting {
+    /// When a segment begins or ends.
+    pub end_test: EndTest,
+    /// How X and dX enter.
+    pub ports: TokenPorts,
+    /// What a token carries for the picture.
+    pub colour: TokenColour,
+    /// The earlier design, Super Buffer, in place of the array.
+    pub super_buffer: bool,
+}
+
+impl Default for SystolicSetting {
+    fn default() -> Self {
+        SystolicSetting {
+            end_test: EndTest::Negative,
+            ports: TokenPorts::Swapped,
+            colour: TokenColour::Tag,
+            super_buffer: false,
+        }
+    }
 }
 
 /// State of one draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawState {
-    /// Effects called; DEPTH only where the target has a Z buffer.
+    /// Effects called; DEPTH only where the target has a Z buffer or the path needs none.
     pub effects: Effects,
     /// Depth test.
     pub depth_function: DepthFunction,
@@ -120,7 +207,7 @@ pub struct Draw<'a> {
 pub struct Clear {
     /// Colour for the frame buffer, RGBA with R in 7:0.
     pub colour: Option<u32>,
-    /// Depth for the Z buffer, at most the format's maximum; only where the target has one.
+    /// Depth to clear to, at most the format's maximum; only where the target has a Z buffer or the path needs none.
     pub depth: Option<u32>,
     /// Pixels to clear: the scissor cut to the target; can be empty.
     pub area: Rectangle,
@@ -155,4 +242,19 @@ pub struct Rows {
     pub words: u32,
     /// Rows.
     pub rows: u32,
+}
+
+impl Rows {
+    /// From the first byte to the first beyond the last row.
+    #[must_use]
+    pub const fn bytes(&self) -> Range<u64> {
+        let before = (self.rows as u64).saturating_sub(1) * self.pitch as u64;
+        self.address as u64..self.address as u64 + before + 4 * self.words as u64
+    }
+
+    /// The bytes of all rows' words in one run from byte `address` on.
+    #[must_use]
+    pub const fn run_at(&self, address: u32) -> Range<u64> {
+        address as u64..address as u64 + 4 * self.words as u64 * self.rows as u64
+    }
 }

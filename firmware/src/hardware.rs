@@ -10,6 +10,8 @@ pub enum Stopped {
     Watchdog,
     /// The host is resetting the card.
     Reset,
+    /// The scene has more primitives than a unit can hold back until its end.
+    SceneFull,
 }
 
 /// The units of a card, as its command processor programs them.

@@ -13,7 +13,7 @@ use zga_device::{Card, CardBus, CardOptions};
 use zga_driver::{Driver, DriverError, MeshBuffer, Target, TargetOptions, Vertex};
 
 use crate::error::{Error, Result};
-use crate::play::{Asked, Settings, check_kernel};
+use crate::play::{Asked, Settings, check_kernel, za_ram};
 use crate::scene::CardSettings;
 
 pub use scenes::{BenchScene, Corner, SCENES};
@@ -99,13 +99,15 @@ impl Bench {
         let pixels = (u64::from(scene.width) + 128) * u64::from(scene.height);
         let bytes = 12 * pixels + 16 * scene.corners.len() as u64 + (4 << 20);
         let video_memory = bytes.next_multiple_of(1 << 22).clamp(1 << 24, 1 << 30) as u32;
-        let (threads, kernel) = (asked.threads, asked.kernel);
-        let card = Card::power_on(CardOptions { video_memory, threads, kernel, ..CardOptions::default() })
+        let size = [scene.width, scene.height];
+        let (za_ram, threads, kernel) = (za_ram(size), asked.threads, asked.kernel);
+        let card = Card::power_on(CardOptions { video_memory, za_ram, threads, kernel })
             .map_err(|reason| Error::Card { place: name.clone(), reason })?;
         let mut driver = Driver::open(card.bus()).map_err(fault())?;
-        let settings = Settings::resolve(&name, &CardSettings::default(), asked, driver.card_info())?;
-        driver.set_hidden_surface(settings.hidden_surface).map_err(fault())?;
-        driver.set_subpixel_bits(settings.subpixel_bits).map_err(fault())?;
+        let settings = Settings::resolve(&name, &CardSettings::default(), asked, size, driver.card_info())?;
+        settings.apply(&mut driver).map_err(fault())?;
+        // A frame begins with a clear of everything, and nobody reads its depths.
+        driver.set_keep_depth(false);
         let options = TargetOptions { depth: Some(settings.depth), ..TargetOptions::new(scene.width, scene.height) };
         let target = driver.create_target(options).map_err(fault())?;
         let vertices: Vec<Vertex> = scene.corners.iter().map(vertex).collect();

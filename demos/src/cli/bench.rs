@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::flags::{named, size};
+use super::flags::{UnitFlags, named, size};
 use super::{Verdict, print, progress};
 use crate::bench::{Bench as Runner, BenchScene, Measured, SCENES};
 use crate::error::{Error, Result};
 use crate::picture::write_file;
 use crate::play::Asked;
-use crate::scene::{Antialias, HiddenSurface};
+use crate::scene::{Antialias, CardSettings, HIDDEN_SURFACES, HiddenSurface};
 use crate::table::{Align, columns, row};
 
 /// Measure the benchmark scenes S1 to S7
@@ -20,7 +20,7 @@ use crate::table::{Align, columns, row};
 /// Mpixel/s,Mtri/s,prims, for one scene (S5 if none is named).
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Examples:\n  zga bench\n  zga bench S5 --json\n  zga bench --scene 5 --size 1024x768 --secs 1.5 --peer zga-1"
+    after_help = "Examples:\n  zga bench\n  zga bench S5 --json\n  zga bench S3 --path za --za-block 8x8\n  zga bench --scene 5 --size 1024x768 --secs 1.5 --peer zga-1"
 )]
 pub(super) struct Bench {
     /// Number of a scene: 5 or S5; all of them if none is named
@@ -42,7 +42,7 @@ pub(super) struct Bench {
     #[arg(long, value_name = "T")]
     threads: Option<usize>,
     /// Path that decides what is hidden
-    #[arg(long, value_name = "P", value_parser = named(HiddenSurface::NAMED))]
+    #[arg(long, alias = "hidden-surface", value_name = "P", value_parser = named(&HIDDEN_SURFACES))]
     path: Option<HiddenSurface>,
     /// Sub-pixels of a pixel
     #[arg(long, value_name = "A", value_parser = named(Antialias::NAMED))]
@@ -56,6 +56,8 @@ pub(super) struct Bench {
     /// Print JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    units: UnitFlags,
 }
 
 impl Bench {
@@ -74,8 +76,8 @@ impl Bench {
         bar.finish_and_clear();
         print(&match (&self.peer, self.json) {
             (Some(peer), _) => measured.iter().map(|measured| measured.csv(peer) + "\n").collect(),
-            (None, true) => json(&measured),
-            (None, false) => table(&measured, self.size),
+            (None, true) => json(&measured, self.path()),
+            (None, false) => table(&measured, self.size, self.path()),
         })?;
         Ok(Verdict::Good)
     }
@@ -103,15 +105,19 @@ impl Bench {
         let one = self.peer.as_ref().is_some_and(|peer| peer.ends_with("-1"));
         Asked {
             threads: self.threads.unwrap_or(usize::from(one)),
-            hidden_surface: self.path,
-            antialias: self.antialias,
             kernel: self.kernel,
+            card: CardSettings { hidden_surface: self.path, antialias: self.antialias, ..self.units.settings() },
             ..Asked::default()
         }
     }
+
+    /// The path's name.
+    fn path(&self) -> &'static str {
+        self.path.unwrap_or(HiddenSurface::ZBuffer).name()
+    }
 }
 
-fn table(measured: &[Measured], [width, height]: [u32; 2]) -> String {
+fn table(measured: &[Measured], [width, height]: [u32; 2], path: &str) -> String {
     let head = ["scene", "", "frames", "median ms", "least ms", "p90 ms", "Mpixel/s", "Mprim/s"];
     let mut rows = vec![row(head)];
     for measured in measured {
@@ -130,16 +136,18 @@ fn table(measured: &[Measured], [width, height]: [u32; 2]) -> String {
     }
     let right = [Align::Right; 6];
     let aligns = [&[Align::Left; 2][..], &right].concat();
-    format!("{width} x {height} pixels, clear to fence, nothing read back\n\n{}", columns("  ", &aligns, &rows))
+    let rows = columns("  ", &aligns, &rows);
+    format!("{width} x {height} pixels, {path} path, clear to fence, nothing read back\n\n{rows}")
 }
 
-fn json(measured: &[Measured]) -> String {
+fn json(measured: &[Measured], path: &str) -> String {
     let list: Vec<_> = measured
         .iter()
         .map(|measured| {
             let ([least, median, p90], [pixels, primitives]) = (measured.milliseconds(), measured.rates());
             json!({
                 "scene": format!("S{}", measured.number),
+                "path": path,
                 "size": measured.size,
                 "frames": measured.frames(),
                 "median_ms": median,

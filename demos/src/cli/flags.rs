@@ -6,7 +6,10 @@ use zga_device::Kernel;
 
 use crate::limits::MAX_TARGET_PIXELS_PER_SIDE;
 use crate::play::{Asked, KERNELS, Look};
-use crate::scene::{Antialias, Fidelity, HiddenSurface};
+use crate::scene::{
+    Antialias, CardSettings, END_TESTS, FIDELITIES, Fidelity, HIDDEN_SURFACES, HiddenSurface, SystolicSettings,
+    TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS, ZaPrediction,
+};
 
 /// What is asked of the card.
 #[derive(Args, Clone, Debug)]
@@ -22,23 +25,16 @@ pub(super) struct CardFlags {
     #[arg(long, value_name = "NAME", default_value = "best", value_parser = named(&KERNELS))]
     pub kernel: Kernel,
     /// Path that decides what is hidden
-    #[arg(long, value_name = "PATH", value_parser = named(HiddenSurface::NAMED))]
+    #[arg(long, alias = "path", value_name = "PATH", value_parser = named(&HIDDEN_SURFACES))]
     pub hidden_surface: Option<HiddenSurface>,
-    /// How the units are simulated
-    #[arg(long, value_name = "NAME", value_parser = named(Fidelity::NAMED))]
-    pub fidelity: Option<Fidelity>,
     /// Sub-pixels of a pixel
     #[arg(long, value_name = "GRID", value_parser = named(Antialias::NAMED))]
     pub antialias: Option<Antialias>,
-    /// Bits of a depth
-    #[arg(long, value_name = "N", value_parser = number(["16", "24", "31"]))]
-    pub depth_bits: Option<u32>,
-    /// Fraction bits of a depth gradient
-    #[arg(long, value_name = "N", value_parser = number(["0", "8", "16", "24"]))]
-    pub depth_fraction_bits: Option<u32>,
     /// Bits of a pixel that coordinates are snapped to
     #[arg(long, value_name = "N", value_parser = number(["4", "8"]))]
     pub subpixel_bits: Option<u32>,
+    #[command(flatten)]
+    pub units: UnitFlags,
 }
 
 impl CardFlags {
@@ -48,12 +44,59 @@ impl CardFlags {
             size: self.size,
             threads: self.threads,
             kernel: self.kernel,
-            hidden_surface: self.hidden_surface,
+            subpixel_bits: self.subpixel_bits,
+            card: CardSettings {
+                hidden_surface: self.hidden_surface,
+                antialias: self.antialias,
+                ..self.units.settings()
+            },
+        }
+    }
+}
+
+/// Settings of depths and of the units that decide what is hidden.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Card")]
+pub(super) struct UnitFlags {
+    /// How units with a clocked model are simulated; picture and clocks do not depend on it
+    #[arg(long, value_name = "NAME", value_parser = named(&FIDELITIES))]
+    fidelity: Option<Fidelity>,
+    /// Bits of a depth
+    #[arg(long, value_name = "N", value_parser = number(["16", "24", "31"]))]
+    depth_bits: Option<u32>,
+    /// Fraction bits of a depth gradient
+    #[arg(long, value_name = "N", value_parser = number(["0", "8", "16", "24"]))]
+    depth_fraction_bits: Option<u32>,
+    /// za: block of pixels that shares a status word, for example 8x8
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    za_block: Option<[u32; 2]>,
+    /// za: how the least depth of a run in a block is predicted
+    #[arg(long, value_name = "NAME", value_parser = named(&ZA_PREDICTIONS))]
+    za_prediction: Option<ZaPrediction>,
+    /// za: bypass no block
+    #[arg(long)]
+    no_bypass: bool,
+    /// systolic: variant, a list of negative|zero, swapped|merged, tag|value, super-buffer
+    #[arg(long, value_name = "LIST", value_parser = systolic_variant)]
+    systolic_variant: Option<SystolicSettings>,
+    /// tile: size of a tile, each side 4, 8, 16, 32 or 64
+    #[arg(long, value_name = "WxH", value_parser = tile_size)]
+    tile_size: Option<[u32; 2]>,
+}
+
+impl UnitFlags {
+    /// The same as card settings.
+    pub(super) fn settings(&self) -> CardSettings {
+        CardSettings {
             fidelity: self.fidelity,
-            antialias: self.antialias,
             depth_bits: self.depth_bits,
             depth_fraction_bits: self.depth_fraction_bits,
-            subpixel_bits: self.subpixel_bits,
+            za_block: self.za_block,
+            za_prediction: self.za_prediction,
+            za_bypass: self.no_bypass.then_some(false),
+            systolic_variant: self.systolic_variant.unwrap_or_default(),
+            tile_size: self.tile_size,
+            ..CardSettings::default()
         }
     }
 }
@@ -103,9 +146,45 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     Ok([side("width", width)?, side("height", height)?])
 }
 
+/// Width and height of a tile, as in 8x8.
+fn tile_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = size(text)?;
+    match sides.iter().find(|side| !TILE_SIDES.contains(side)) {
+        Some(side) => Err(format!("{side} is no side of a tile: expected 4, 8, 16, 32 or 64 pixels")),
+        None => Ok(sides),
+    }
+}
+
+/// Names of a systolic variant, as in zero,merged: each stands for one of its settings.
+fn systolic_variant(text: &str) -> Result<SystolicSettings, String> {
+    fn find<T: Copy>(names: &[(&str, T)], name: &str) -> Option<T> {
+        names.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+    }
+    let mut variant = SystolicSettings::default();
+    for name in text.split(',') {
+        let twice = if let Some(test) = find(&END_TESTS, name) {
+            variant.end_test.replace(test).is_some()
+        } else if let Some(ports) = find(&TOKEN_PORTS, name) {
+            variant.ports.replace(ports).is_some()
+        } else if let Some(colour) = find(&TOKEN_COLOURS, name) {
+            variant.colour.replace(colour).is_some()
+        } else if name == "super-buffer" {
+            variant.super_buffer.replace(true).is_some()
+        } else {
+            let expected = "negative or zero, swapped or merged, tag or value, super-buffer";
+            return Err(format!("{name:?} is not known: expected {expected}, with commas between"));
+        };
+        if twice {
+            return Err(format!("{name} says again what was said before"));
+        }
+    }
+    Ok(variant)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{EndTest, TokenPorts};
 
     #[test]
     fn size_good_and_bad_texts() {
@@ -114,5 +193,20 @@ mod tests {
         assert!(size("0x480").is_err_and(|fault| fault.starts_with("width is \"0\"")));
         assert!(size("640x16385").is_err_and(|fault| fault.starts_with("height is \"16385\"")));
         assert!(size("640x-1").is_err());
+    }
+
+    #[test]
+    fn tile_size_good_and_bad_texts() {
+        assert_eq!(tile_size("64x4"), Ok([64, 4]));
+        assert!(tile_size("8x12").is_err_and(|fault| fault.starts_with("12 is no side of a tile")));
+    }
+
+    #[test]
+    fn systolic_variant_good_and_bad_texts() {
+        let found = systolic_variant("merged,zero,super-buffer").expect("all known");
+        assert_eq!((found.end_test, found.ports), (Some(EndTest::Zero), Some(TokenPorts::Merged)));
+        assert_eq!((found.colour, found.super_buffer), (None, Some(true)));
+        assert!(systolic_variant("zero,negative").is_err_and(|fault| fault.contains("says again")));
+        assert!(systolic_variant("zero, merged").is_err_and(|fault| fault.contains("\" merged\" is not known")));
     }
 }

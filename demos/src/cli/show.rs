@@ -18,11 +18,12 @@ pub(super) const FOLDER: &str = "zga-out";
 
 /// Show a demo, a scene file or a mesh
 ///
-/// In a window: drag to orbit, wheel to zoom, D decals, W wireframe, Space animation, S saves a picture, H help, Esc
-/// ends. With --headless, one of --out, --depth, --report, or no display: as files.
+/// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, D decals, W wireframe, Space animation, S
+/// saves a picture, H help, Esc ends; the title tells path and clocks. With --headless, one of --out, --depth, --report,
+/// or no display: as files.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Examples:\n  zga show teapot\n  zga show decal-compare --headless --out frames --frames 90\n  zga show spot.obj --out spot.png --depth spot-depth.png --report spot.json"
+    after_help = "Examples:\n  zga show teapot\n  zga show decal-compare --headless --out frames --frames 90\n  zga show spot.obj --out spot.png --depth spot-depth.png --report spot.json\n  zga show teapot --hidden-surface za --za-block 8x8 --za-prediction plane --report za.json"
 )]
 pub(super) struct Show {
     /// A demo, a scene file (.json) or a mesh (.obj, .gltf, .glb)
@@ -37,7 +38,7 @@ pub(super) struct Show {
     /// Frames to draw
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     frames: u32,
-    /// Write the depths of the last frame as a PNG of 16 bits, 0 near
+    /// Write the depths of the last frame as a PNG of 16 bits, 0 near; a path that keeps none draws it once more
     #[arg(long, value_name = "FILE")]
     depth: Option<PathBuf>,
     /// Write what the last frame called for and what it cost, as JSON

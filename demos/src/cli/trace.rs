@@ -13,7 +13,7 @@ use super::flags::{CardFlags, LookFlags};
 use super::source::Source;
 use super::{Verdict, note, print, progress};
 use crate::error::{Error, Result};
-use crate::play::Session;
+use crate::play::{MOST_ZA_RAM, Session};
 use crate::table::{columns, grouped, row};
 
 /// Longest wait for a fence of a replay.
@@ -109,7 +109,9 @@ impl Replay {
         let file = &self.file;
         let fault = |reason| Error::Trace { file: file.clone(), reason };
         let video_memory = TraceReader::new(open(file)?).map_err(fault)?.video_memory();
-        let options = CardOptions { video_memory, threads: self.threads, ..CardOptions::default() };
+        // More Za RAM than the recorded card had changes nothing: base addresses are in the trace.
+        let options =
+            CardOptions { video_memory, za_ram: MOST_ZA_RAM, threads: self.threads, ..CardOptions::default() };
         let place = || file.display().to_string();
         let card = Card::power_on(options).map_err(|reason| Error::Card { place: place(), reason })?;
         let report = trace::replay(open(file)?, &mut card.bus(), TIMEOUT).map_err(fault)?;

@@ -44,8 +44,8 @@ impl Cost {
         self.host.as_secs_f64() * 1e3
     }
 
-    /// The report of a frame: `size`, `hidden_surface`, `fidelity`, `frame_hash`, `cycles`, `counters`, `effects`,
-    /// `host_ms`.
+    /// The report of a frame: `size`, `hidden_surface`, `fidelity`, `card` (what the path depends on), `frame_hash`,
+    /// `cycles`, `counters`, `effects`, `host_ms`.
     #[must_use]
     pub fn report(&self, size: [u32; 2], settings: &Settings, frame_hash: &str) -> Value {
         let (mut cycles, mut counters) = (Map::new(), Map::new());
@@ -59,6 +59,7 @@ impl Cost {
             "size": size,
             "hidden_surface": settings.hidden_surface.name(),
             "fidelity": settings.fidelity.name(),
+            "card": settings.report(),
             "frame_hash": frame_hash,
             "cycles": cycles,
             "counters": counters,

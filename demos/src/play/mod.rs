@@ -5,7 +5,7 @@
 //!
 //! | file | holds |
 //! | --- | --- |
-//! | `settings` | what is asked of the card, and what it has |
+//! | `settings` | what is asked of the card, what it has, and how it is set up |
 //! | `look` | decals and wireframe switched |
 //! | `session` | the card, the driver and the meshes in video memory |
 //! | `cost` | effects, units, clocks and counters of a frame |
@@ -18,4 +18,4 @@ mod settings;
 pub use cost::{Cost, effect_names, unit_names};
 pub use look::Look;
 pub use session::Session;
-pub use settings::{Asked, KERNELS, Settings, check_kernel};
+pub use settings::{Asked, KERNELS, MOST_ZA_RAM, Settings, check_kernel, za_ram};

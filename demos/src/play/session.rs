@@ -7,11 +7,11 @@ use zga_abi::Bus;
 use zga_abi::format;
 use zga_device::{Card, CardBus, CardOptions, Monitor};
 use zga_driver::bus::RecordingBus;
-use zga_driver::{Camera, Driver, Frame, MeshBuffer, Target, TargetOptions, Vertex};
+use zga_driver::{Camera, Driver, DriverError, Frame, MeshBuffer, Target, TargetOptions, Vertex};
 
-use super::{Asked, Cost, Look, Settings, check_kernel};
+use super::{Asked, Cost, Look, Settings, check_kernel, za_ram};
 use crate::error::{Error, Result};
-use crate::scene::{self, Batch, Scene, Topology};
+use crate::scene::{self, Batch, Colour, Scene, Topology};
 
 /// Video memory is taken in steps of this, and at least four of them.
 const MEMORY_STEP: u64 = 16 << 20;
@@ -27,6 +27,8 @@ pub struct Session<B: Bus = CardBus> {
     settings: Settings,
     size: [u32; 2],
     meshes: Vec<Uploaded>,
+    /// Camera and background of the frame that was drawn last.
+    view: Option<(scene::Camera, Colour)>,
     /// Draw path of each draw packet of the frame that was drawn last.
     drawn: Vec<String>,
     warned: Vec<String>,
@@ -81,9 +83,9 @@ fn power_on(name: &str, scene: &Scene, asked: &Asked) -> Result<Card> {
     check_kernel(asked.kernel)?;
     let options = CardOptions {
         video_memory: video_memory(scene),
+        za_ram: za_ram(scene.size),
         threads: asked.threads,
         kernel: asked.kernel,
-        ..CardOptions::default()
     };
     Card::power_on(options).map_err(|reason| Error::Card { place: name.to_owned(), reason })
 }
@@ -103,9 +105,10 @@ impl<B: Bus> Session<B> {
     fn on(name: &str, scene: &Scene, asked: &Asked, card: Card, bus: B) -> Result<Self> {
         let fault = || Error::driver(name);
         let mut driver = Driver::open(bus).map_err(fault())?;
-        let settings = Settings::resolve(name, &scene.card, asked, driver.card_info())?;
-        driver.set_hidden_surface(settings.hidden_surface).map_err(fault())?;
-        driver.set_subpixel_bits(settings.subpixel_bits).map_err(fault())?;
+        let settings = Settings::resolve(name, &scene.card, asked, scene.size, driver.card_info())?;
+        settings.apply(&mut driver).map_err(fault())?;
+        // Every frame begins with a clear of everything, and depths are drawn again for those who ask for them.
+        driver.set_keep_depth(false);
         let [width, height] = scene.size;
         let target = driver
             .create_target(TargetOptions {
@@ -121,6 +124,7 @@ impl<B: Bus> Session<B> {
             settings,
             size: scene.size,
             meshes: Vec::new(),
+            view: None,
             drawn: Vec::new(),
             warned: Vec::new(),
             card,
@@ -130,6 +134,16 @@ impl<B: Bus> Session<B> {
     /// What the card is set to.
     pub const fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// Sets the card to something else from the next frame on; the depth format stays as it is.
+    ///
+    /// # Errors
+    /// [`Error::Driver`] for what the card has not.
+    pub fn set(&mut self, settings: Settings) -> Result<()> {
+        settings.apply(&mut self.driver).map_err(Error::driver(&self.name))?;
+        self.settings = Settings { depth: self.settings.depth, ..settings };
+        Ok(())
     }
 
     /// Pixels of a row, and rows.
@@ -171,6 +185,14 @@ impl<B: Bus> Session<B> {
         self.submit(scene)
     }
 
+    /// Draws what is in video memory and shows it.
+    fn submit(&mut self, scene: &Scene) -> Result<()> {
+        let view = (scene.camera, scene.background);
+        self.view = Some(view);
+        self.encode(view)?;
+        self.driver.present(&self.target).map_err(Error::driver(&self.name))
+    }
+
     /// Puts the batches into video memory; those that are there already stay.
     fn upload(&mut self, batches: Vec<Batch>) -> Result<()> {
         let mut old = std::mem::take(&mut self.meshes).into_iter();
@@ -198,13 +220,13 @@ impl<B: Bus> Session<B> {
     }
 
     /// Draws what is in video memory.
-    fn submit(&mut self, scene: &Scene) -> Result<()> {
+    fn encode(&mut self, (from, background): (scene::Camera, Colour)) -> Result<()> {
         let Self { name, driver, target, meshes, drawn, .. } = self;
         let fault = || Error::driver(name.as_str());
         drawn.clear();
-        driver.set_camera(camera(&scene.camera)).map_err(fault())?;
+        driver.set_camera(camera(&from)).map_err(fault())?;
         driver.begin_scene(target).map_err(fault())?;
-        driver.clear(Some(scene.background), Some(1.0)).map_err(fault())?;
+        driver.clear(Some(background), Some(1.0)).map_err(fault())?;
         for Uploaded { batch, mesh } in meshes {
             if mesh.primitives() == 0 {
                 continue;
@@ -219,8 +241,7 @@ impl<B: Bus> Session<B> {
             .map_err(place())?;
             drawn.push(batch.path.clone());
         }
-        driver.end_scene().map_err(fault())?;
-        driver.present(target).map_err(fault())
+        driver.end_scene().map_err(fault())
     }
 
     /// Draws a scene, waits for it, and takes the frame as it is scanned out, with what it cost.
@@ -247,12 +268,23 @@ impl<B: Bus> Session<B> {
         Ok((self.driver.capture().map_err(fault(&self.name))?, cost))
     }
 
-    /// The depths of the frame that was drawn last, dense rows.
+    /// The depths of the frame that was drawn last, dense rows. A path that kept none draws the frame once more, with
+    /// a Z buffer: what the frame itself cost does not depend on who asks later.
     ///
     /// # Errors
     /// [`Error::Driver`].
     pub fn depths(&mut self) -> Result<Vec<u32>> {
-        self.driver.capture_depth(&self.target).map_err(Error::driver(&self.name))
+        let depths = match (self.driver.capture_depth(&self.target), self.view) {
+            (Err(DriverError::DepthNotKept { .. }), Some(view)) => {
+                self.driver.set_keep_depth(true);
+                let drawn = self.encode(view);
+                self.driver.set_keep_depth(false);
+                drawn?;
+                self.driver.capture_depth(&self.target)
+            }
+            (depths, _) => depths,
+        };
+        depths.map_err(Error::driver(&self.name))
     }
 }
 

@@ -23,7 +23,10 @@ pub use camera::{Camera, Orthographic, Perspective};
 pub(crate) use camera::{narrow, wide};
 pub use effects::{Blend, FogFunction, Light, LightType, Material, Texture, TextureFilter};
 pub use flatten::{Batch, Topology};
-pub use settings::{Antialias, CardSettings, Fidelity, HiddenSurface, SubpixelDepth, ZaPrediction};
+pub use settings::{
+    Antialias, CardSettings, END_TESTS, EndTest, FIDELITIES, Fidelity, HIDDEN_SURFACES, HiddenSurface, SubpixelDepth,
+    SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, TokenColour, TokenPorts, ZA_PREDICTIONS, ZaPrediction,
+};
 
 use crate::error::{Error, Result};
 use crate::limits;

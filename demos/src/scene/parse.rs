@@ -7,13 +7,16 @@ use std::path::Path;
 use super::json::{ANY, Fault, Json, Object, Read};
 use super::parse_draw::{self, Context};
 use super::parse_effects;
-use super::settings::{Antialias, CardSettings, Fidelity, HiddenSurface, SubpixelDepth, ZaPrediction};
+use super::settings::{
+    Antialias, CardSettings, END_TESTS, FIDELITIES, HIDDEN_SURFACES, SubpixelDepth, SystolicSettings, TILE_SIDES,
+    TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS,
+};
 use super::{Camera, Orthographic, Perspective, Scene};
 use crate::error::{Error, Result};
 use crate::limits::{MAX_FILE_BYTES, MAX_TARGET_PIXELS_PER_SIDE};
 
 /// Largest side of a Za block, in pixels.
-const MAX_ZA_BLOCK_SIDE: u32 = 1024;
+const MAX_ZA_BLOCK_SIDE: u32 = 16384;
 
 impl Scene {
     /// Reads a scene from JSON. Meshes are named but not read; see [`Scene::load_meshes`]. `file` is for messages.
@@ -123,19 +126,35 @@ fn card(value: &Json) -> Read<CardSettings> {
         "subpixel_depth",
         "za_block",
         "za_prediction",
+        "za_bypass",
+        "systolic_variant",
+        "tile_size",
         "depth_bits",
         "depth_fraction_bits",
     ])?;
     Ok(CardSettings {
-        hidden_surface: fields.optional("hidden_surface", |value| value.named(HiddenSurface::NAMED))?,
-        fidelity: fields.optional("fidelity", |value| value.named(Fidelity::NAMED))?,
+        hidden_surface: fields.optional("hidden_surface", |value| value.named(&HIDDEN_SURFACES))?,
+        fidelity: fields.optional("fidelity", |value| value.named(&FIDELITIES))?,
         antialias: fields.optional("antialias", |value| value.named(Antialias::NAMED))?,
         subpixel_depth: fields.optional("subpixel_depth", |value| value.named(SubpixelDepth::NAMED))?,
         za_block: fields
             .optional("za_block", |value| value.array("whole numbers", |side| side.whole(1..=MAX_ZA_BLOCK_SIDE)))?,
-        za_prediction: fields.optional("za_prediction", |value| value.named(ZaPrediction::NAMED))?,
+        za_prediction: fields.optional("za_prediction", |value| value.named(&ZA_PREDICTIONS))?,
+        za_bypass: fields.optional("za_bypass", Json::flag)?,
+        systolic_variant: fields.optional("systolic_variant", systolic_variant)?.unwrap_or_default(),
+        tile_size: fields.optional("tile_size", |value| value.array("sides", |side| one_of(side, &TILE_SIDES)))?,
         depth_bits: fields.optional("depth_bits", |value| one_of(value, &[16, 24, 31]))?,
         depth_fraction_bits: fields.optional("depth_fraction_bits", |value| one_of(value, &[0, 8, 16, 24]))?,
+    })
+}
+
+fn systolic_variant(value: &Json) -> Read<SystolicSettings> {
+    let fields = value.object(&["end_test", "ports", "colour", "super_buffer"])?;
+    Ok(SystolicSettings {
+        end_test: fields.optional("end_test", |value| value.named(&END_TESTS))?,
+        ports: fields.optional("ports", |value| value.named(&TOKEN_PORTS))?,
+        colour: fields.optional("colour", |value| value.named(&TOKEN_COLOURS))?,
+        super_buffer: fields.optional("super_buffer", Json::flag)?,
     })
 }
 

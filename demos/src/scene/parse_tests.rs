@@ -10,7 +10,9 @@ use super::*;
 const FULL: &str = r#"{ "size": [640, 480], "background": [16, 16, 32, 255],
   "camera": {"screen": {}},
   "card": {"hidden_surface": "zbuffer", "fidelity": "functional", "antialias": "off", "subpixel_depth": "search",
-           "za_block": [32, 1], "za_prediction": "block-length", "depth_bits": 24, "depth_fraction_bits": 24},
+           "za_block": [32, 1], "za_prediction": "block-length", "za_bypass": false, "tile_size": [8, 64],
+           "systolic_variant": {"end_test": "zero", "ports": "merged", "colour": "value", "super_buffer": true},
+           "depth_bits": 24, "depth_fraction_bits": 24},
   "lights": [{"type": "spot", "position": [0,1,2], "direction": [0,-1,0], "attenuation_cut_off": 9.5,
               "spot_exponent": 4, "colour": [255,240,200,255], "ambient": [8,8,8,255]}],
   "materials": {"plain": {}, "glass": {"blend": "alpha", "shininess": 32, "specular": [255,255,255,255],
@@ -49,6 +51,14 @@ fn parse_full_example_keeps_every_field() {
     assert_eq!(scene.size, [640, 480]);
     assert_eq!(scene.card.hidden_surface, Some(HiddenSurface::ZBuffer));
     assert_eq!(scene.card.za_block, Some([32, 1]));
+    assert_eq!((scene.card.za_bypass, scene.card.tile_size), (Some(false), Some([8, 64])));
+    let variant = SystolicSettings {
+        end_test: Some(EndTest::Zero),
+        ports: Some(TokenPorts::Merged),
+        colour: Some(TokenColour::Value),
+        super_buffer: Some(true),
+    };
+    assert_eq!(scene.card.systolic_variant, variant);
     assert_eq!(scene.card.depth_bits, Some(24));
     assert_eq!(scene.lights[0].kind, LightType::Spot);
     assert_eq!(scene.materials["glass"].texture.as_ref().expect("a texture").mirror, [false, true]);
@@ -113,7 +123,7 @@ fn parse_unknown_fields_name_their_path() {
 
 #[test]
 fn parse_wrong_values_name_path_expected_and_found() {
-    let cases: [(&str, &str, &str, &str); 14] = [
+    let cases: [(&str, &str, &str, &str); 17] = [
         (r#"{"draw": []}"#, "size", "this field", "nothing"),
         (r#"[]"#, "the document", "an object", "a list of 0"),
         (r#"{"size": [0, 1], "draw": []}"#, "size[0]", "a whole number in 1..=16384", "0"),
@@ -127,6 +137,24 @@ fn parse_wrong_values_name_path_expected_and_found() {
             "256",
         ),
         (r#"{"size": [1,1], "draw": [], "card": {"depth_bits": 20}}"#, "card.depth_bits", "one of 16, 24, 31", "20"),
+        (
+            r#"{"size": [1,1], "draw": [], "card": {"za_block": [8, 16385]}}"#,
+            "card.za_block[1]",
+            "a whole number in 1..=16384",
+            "16385",
+        ),
+        (
+            r#"{"size": [1,1], "draw": [], "card": {"tile_size": [12, 8]}}"#,
+            "card.tile_size[0]",
+            "one of 4, 8, 16, 32, 64",
+            "12",
+        ),
+        (
+            r#"{"size": [1,1], "draw": [], "card": {"systolic_variant": {"ports": "both"}}}"#,
+            "card.systolic_variant.ports",
+            "one of \"swapped\", \"merged\"",
+            "\"both\"",
+        ),
         (
             r#"{"size": [1,1], "draw": [], "card": {"fidelity": "exact"}}"#,
             "card.fidelity",

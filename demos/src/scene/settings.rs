@@ -1,5 +1,7 @@
 //! What a scene may ask of the card. Every setting is optional: what is absent stays as the card has it.
 
+pub use zga_abi::format::{EndTest, Fidelity, HiddenSurface, TokenColour, TokenPorts, ZaPrediction};
+
 /// Declares an enumeration whose values have names in scene files and on the command line.
 macro_rules! named_values {
     ($(#[$doc:meta])* $name:ident { $($(#[$variant_doc:meta])* $variant:ident = $text:literal,)+ }) => {
@@ -21,29 +23,33 @@ macro_rules! named_values {
 }
 pub(super) use named_values;
 
-named_values! {
-    /// Which path decides what is hidden.
-    HiddenSurface {
-        /// A plain Z buffer.
-        ZBuffer = "zbuffer",
-        /// Z buffer with block status words.
-        Za = "za",
-        /// Systolic scan-line array.
-        Systolic = "systolic",
-        /// Sorted tiles.
-        Tile = "tile",
-    }
+/// The values of an enumeration of the register map with their names in scene files and on the command line.
+macro_rules! names_of {
+    ($type:ident) => {{
+        let mut names = [("", $type::ALL[0]); $type::ALL.len()];
+        let mut at = 0;
+        while at < names.len() {
+            names[at] = ($type::ALL[at].name(), $type::ALL[at]);
+            at += 1;
+        }
+        names
+    }};
 }
 
-named_values! {
-    /// How the units with a clocked model are simulated.
-    Fidelity {
-        /// The host's fastest way to the same pixels and clock counts.
-        Functional = "functional",
-        /// Register by register.
-        Clocked = "clocked",
-    }
-}
+/// Paths that decide what is hidden, by name.
+pub const HIDDEN_SURFACES: [(&str, HiddenSurface); HiddenSurface::ALL.len()] = names_of!(HiddenSurface);
+/// Ways to simulate units with a clocked model, by name.
+pub const FIDELITIES: [(&str, Fidelity); Fidelity::ALL.len()] = names_of!(Fidelity);
+/// Ways to predict the least depth of a run in a block, by name.
+pub const ZA_PREDICTIONS: [(&str, ZaPrediction); ZaPrediction::ALL.len()] = names_of!(ZaPrediction);
+/// End tests of the systolic array, by name.
+pub const END_TESTS: [(&str, EndTest); EndTest::ALL.len()] = names_of!(EndTest);
+/// Ways into the systolic array, by name.
+pub const TOKEN_PORTS: [(&str, TokenPorts); TokenPorts::ALL.len()] = names_of!(TokenPorts);
+/// What tokens of the systolic array carry, by name.
+pub const TOKEN_COLOURS: [(&str, TokenColour); TokenColour::ALL.len()] = names_of!(TokenColour);
+/// Sides that a tile of the tile unit can have, in pixels.
+pub const TILE_SIDES: [u32; 5] = [4, 8, 16, 32, 64];
 
 named_values! {
     /// Sub-pixels of a pixel.
@@ -71,35 +77,68 @@ named_values! {
     }
 }
 
-named_values! {
-    /// How the least depth of a run in a block is predicted.
-    ZaPrediction {
-        /// From the whole block length.
-        BlockLength = "block-length",
-        /// From the covered pixels.
-        CoveredRun = "covered-run",
-        /// The primitive's exact least depth in the block.
-        Plane = "plane",
-    }
-}
-
 /// Settings of the card; `None` leaves the card's own.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CardSettings {
     /// Which path decides what is hidden.
     pub hidden_surface: Option<HiddenSurface>,
-    /// How the units are simulated.
+    /// How the units with a clocked model are simulated.
     pub fidelity: Option<Fidelity>,
     /// Sub-pixels of a pixel.
     pub antialias: Option<Antialias>,
     /// Where a fragment's depth is taken.
     pub subpixel_depth: Option<SubpixelDepth>,
-    /// Width and height of a Za block, in pixels, each 1..=1024.
+    /// Width and height of a Za block, in pixels, each 1..=16384.
     pub za_block: Option<[u32; 2]>,
     /// How the least depth of a run is predicted.
     pub za_prediction: Option<ZaPrediction>,
+    /// Blocks behind the prediction are bypassed.
+    pub za_bypass: Option<bool>,
+    /// Variant of the systolic array.
+    pub systolic_variant: SystolicSettings,
+    /// Width and height of a tile, in pixels, each one of [`TILE_SIDES`].
+    pub tile_size: Option<[u32; 2]>,
     /// Bits of a depth: 16, 24 or 31.
     pub depth_bits: Option<u32>,
     /// Fraction bits of a depth gradient: 0, 8, 16 or 24.
     pub depth_fraction_bits: Option<u32>,
+}
+
+/// Variant of the systolic array; `None` leaves the card's own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SystolicSettings {
+    /// When an element sees that a segment has begun or ended.
+    pub end_test: Option<EndTest>,
+    /// How X and dX of a segment enter.
+    pub ports: Option<TokenPorts>,
+    /// What a token carries for the picture.
+    pub colour: Option<TokenColour>,
+    /// The earlier design in place of the array.
+    pub super_buffer: Option<bool>,
+}
+
+impl CardSettings {
+    /// These settings; what they leave open is as in `other`.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        let (systolic, others) = (self.systolic_variant, other.systolic_variant);
+        Self {
+            hidden_surface: self.hidden_surface.or(other.hidden_surface),
+            fidelity: self.fidelity.or(other.fidelity),
+            antialias: self.antialias.or(other.antialias),
+            subpixel_depth: self.subpixel_depth.or(other.subpixel_depth),
+            za_block: self.za_block.or(other.za_block),
+            za_prediction: self.za_prediction.or(other.za_prediction),
+            za_bypass: self.za_bypass.or(other.za_bypass),
+            systolic_variant: SystolicSettings {
+                end_test: systolic.end_test.or(others.end_test),
+                ports: systolic.ports.or(others.ports),
+                colour: systolic.colour.or(others.colour),
+                super_buffer: systolic.super_buffer.or(others.super_buffer),
+            },
+            tile_size: self.tile_size.or(other.tile_size),
+            depth_bits: self.depth_bits.or(other.depth_bits),
+            depth_fraction_bits: self.depth_fraction_bits.or(other.depth_fraction_bits),
+        }
+    }
 }

@@ -63,6 +63,8 @@ faults! {
     Watchdog = 14 "WATCHDOG",
     /// Surfaces that must lie apart overlap.
     Overlap = 15 "OVERLAP",
+    /// A clocked unit that holds its scene back has no room for more primitives in it.
+    SceneFull = 16 "SCENE_FULL",
 }
 
 /// A refused packet: the reason, and where in the packet it is.
@@ -70,7 +72,8 @@ faults! {
 /// Registers can be written at any time with any value, so they are checked when a packet samples
 /// them. Where such a register is at fault (BAD_VALUE, OUT_OF_MEMORY, BAD_ALIGNMENT, OVERLAP or
 /// UNSUPPORTED), `word` is 0 and `value` is the register's byte offset. With any other code, word 0
-/// is the header itself and `value` the header; WATCHDOG has no place in the packet: both are 0.
+/// is the header itself and `value` the header; WATCHDOG and SCENE_FULL have no place in the
+/// packet: both are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fault {
     /// Why.

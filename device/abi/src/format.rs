@@ -142,6 +142,59 @@ enumeration! {
     }
 }
 
+enumeration! {
+    /// How units that have a clocked model are simulated. Pixels, counters and clocks do not depend on it.
+    Fidelity {
+        /// The host's fastest way; clocks by closed form.
+        Functional = 0 "functional",
+        /// Stepped register by register.
+        Clocked = 1 "clocked",
+    }
+}
+
+enumeration! {
+    /// How the Za unit predicts the least depth of a primitive in a block. All are safe; they differ in
+    /// how tight they are and in clocks.
+    ZaPrediction {
+        /// From the first covered pixel over the whole length of a block, as published.
+        BlockLength = 0 "block-length",
+        /// Over the covered pixels only.
+        CoveredRun = 1 "covered-run",
+        /// The least depth that the primitive really has in the block.
+        Plane = 2 "plane",
+    }
+}
+
+enumeration! {
+    /// When an element of the systolic array sees that a segment has begun or ended.
+    EndTest {
+        /// A - 1 is negative.
+        Negative = 0 "negative",
+        /// A - 1 is zero; X and dX enter one larger.
+        Zero = 1 "zero",
+    }
+}
+
+enumeration! {
+    /// How X and dX of a segment enter the systolic array.
+    TokenPorts {
+        /// X on port A; dX on port B at T1 only, the first element of the segment swaps it in.
+        Swapped = 0 "swapped",
+        /// X and dX share port A.
+        Merged = 1 "merged",
+    }
+}
+
+enumeration! {
+    /// What a token of the systolic array carries at T3.
+    TokenColour {
+        /// The tag of its segment: what is seen is shaded after the line.
+        Tag = 0 "tag",
+        /// The colour itself, as published; primitives with interpolated colours still carry their tag.
+        Value = 1 "value",
+    }
+}
+
 /// Number format of depth: unsigned integers 0 (near) ..= 2^bits - 1 (far).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DepthFormat {

@@ -200,6 +200,35 @@ registers! {
         3:0 "bits" "4 or 8";
     }
 
+    /// How units that have a clocked model (Za unit, systolic array, tile unit) are simulated. Pixels, counters and clocks do not depend on it.
+    Fidelity "FIDELITY" @ 0x0248 [1] ReadWrite reset &[0], writable 0x1, w1c 0, {
+        0:0 "fidelity" "0 functional, 1 clocked";
+    }
+    /// Block of pixels that shares a Za word.
+    ZaBlock "ZA_BLOCK" @ 0x024C [1] ReadWrite reset &[0x0001_0020], writable 0x7FFF_7FFF, w1c 0, {
+        30:16 "height" "pixels, 1..=16384";
+        14:0 "width" "pixels, 1..=16384";
+    }
+    /// How the Za unit predicts the least depth of a primitive in a block.
+    ZaPrediction "ZA_PREDICTION" @ 0x0250 [1] ReadWrite reset &[0], writable 0x103, w1c 0, {
+        8:8 "no_bypass" "1: no block is bypassed, whatever is predicted";
+        1:0 "prediction" "0 block-length, 1 covered-run, 2 plane";
+    }
+    /// First byte of the frame's words in Za RAM, a multiple of 64. Frames with areas of their own keep their logical clears apart.
+    ZaBase "ZA_BASE" @ 0x0254 [1] ReadWrite reset &[0], writable 0x01FF_FFC0, w1c 0, {}
+    /// Variant of the systolic array.
+    SystolicVariant "SYSTOLIC_VARIANT" @ 0x0258 [1] ReadWrite reset &[0], writable 0xF, w1c 0, {
+        3:3 "super_buffer" "1: the earlier design: a token a clock, refresh data flow back";
+        2:2 "colour" "token carries 0 a tag, 1 the colour where it is flat";
+        1:1 "ports" "0 dX on port B at T1 only, 1 X and dX merged on port A";
+        0:0 "end_test" "a segment begins or ends where A - 1 is 0 negative, 1 zero";
+    }
+    /// Size of a tile of the tile unit.
+    TileSize "TILE_SIZE" @ 0x025C [1] ReadWrite reset &[0x0008_0008], writable 0x007F_007F, w1c 0, {
+        22:16 "height" "pixels: 4, 8, 16, 32 or 64";
+        6:0 "width" "pixels: 4, 8, 16, 32 or 64";
+    }
+
     // Draw state: sampled by each draw -------------------------------------------------------
     /// Effects the draws that follow call for.
     Effects "EFFECTS" @ 0x0280 [1] ReadWrite reset &[0x1], writable 0x0000_0FFF, w1c 0, {

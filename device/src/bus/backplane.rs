@@ -19,7 +19,7 @@ use crate::frontend::control::{Control, ControlPort, control};
 use crate::frontend::fifo::{FifoFetch, FifoPort, fifo};
 use crate::frontend::register_file::RegisterFile;
 use crate::frontend::ring::Ring;
-use crate::memory::{VideoMemory, ZaRam};
+use crate::memory::VideoMemory;
 use crate::probe::account::Account;
 use crate::scanout::monitor::Cable;
 use parking_lot::Mutex;
@@ -31,7 +31,14 @@ use zga_abi::{Counter, Effects, Reg};
 /// Effects that this card has units for.
 const EFFECTS: Effects = Effects::DEPTH.union(Effects::GOURAUD).union(Effects::PERSPECTIVE).union(Effects::DECAL);
 /// Hidden-surface paths that this card has, as in CAPABILITY_PATHS.
-const PATHS: u32 = 1 << HiddenSurface::ZBuffer.code();
+const PATHS: u32 = {
+    let (mut paths, mut index) = (0, 0);
+    while index < HiddenSurface::ALL.len() {
+        paths |= 1 << HiddenSurface::ALL[index].code();
+        index += 1;
+    }
+    paths
+};
 
 /// Bit 3 of STATUS.
 const STATUS_IN_SCENE: u32 = 1 << 3;
@@ -51,7 +58,6 @@ pub(crate) struct Backplane {
     pub(crate) fifo: FifoPort,
     pub(crate) control: Control,
     pub(crate) memory: Mutex<VideoMemory>,
-    pub(crate) za_ram: Mutex<ZaRam>,
     /// Counters as the COUNTERS registers show them; the card adds what it has counted since
     /// before every fence, every interrupt and every rest.
     pub(crate) counters: Mutex<Account>,
@@ -79,8 +85,7 @@ impl Backplane {
             ring: Ring::default(),
             fifo,
             control,
-            memory: Mutex::new(VideoMemory::new(video_memory)),
-            za_ram: Mutex::new(ZaRam::new(za_ram)),
+            memory: Mutex::new(VideoMemory::new(video_memory, za_ram)),
             counters: Mutex::new(Account::default()),
             cable: Arc::new(Cable::default()),
             active: AtomicBool::new(true),

@@ -85,7 +85,7 @@ impl Bus for CardBus {
                     count
                 }
                 Aperture::Memory(index) => self.backplane.memory.lock().read(index, part),
-                Aperture::Za(index) => self.backplane.za_ram.lock().read(index, part),
+                Aperture::Za(index) => self.backplane.memory.lock().za().read(index, part),
                 Aperture::Fifo | Aperture::Nothing => 0,
             };
             if answered < count {
@@ -122,7 +122,7 @@ impl Bus for CardBus {
                     count
                 }
                 Aperture::Memory(index) => self.backplane.memory.lock().write(index, part),
-                Aperture::Za(index) => self.backplane.za_ram.lock().write(index, part),
+                Aperture::Za(index) => self.backplane.memory.lock().za_mut().write(index, part),
                 Aperture::Nothing => 0,
             };
             if answered < count {

@@ -6,6 +6,7 @@
 //! Clocks: none; device time stands still.
 
 use crate::error::CardError;
+use crate::hidden::systolic::Waves;
 use crate::probe::snapshot::State;
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
@@ -18,9 +19,13 @@ pub(crate) enum Request {
     /// Soft reset; answer when done.
     Reset(Sender<()>),
     /// Save everything.
-    Save(Sender<State>),
+    Save(Sender<Result<State, CardError>>),
     /// Restore everything.
     Restore(Arc<State>, Sender<Result<(), CardError>>),
+    /// Record the next scene of the clocked systolic array.
+    Record(Waves, Sender<()>),
+    /// Give the waveform that was recorded away.
+    TakeRecorded(Sender<Option<Vec<u8>>>),
     /// End the thread.
     PowerOff,
 }
@@ -82,7 +87,7 @@ impl Control {
     /// # Errors
     /// [`CardError::PoweredOff`].
     pub(crate) fn save(&self) -> Result<State, CardError> {
-        self.ask(Request::Save).ok_or(CardError::PoweredOff)
+        self.ask(Request::Save).unwrap_or(Err(CardError::PoweredOff))
     }
 
     /// Restores the card's state.
@@ -91,6 +96,22 @@ impl Control {
     /// [`CardError::PoweredOff`], or what the card finds wrong with the state.
     pub(crate) fn restore(&self, state: Arc<State>) -> Result<(), CardError> {
         self.ask(|answer| Request::Restore(state, answer)).unwrap_or(Err(CardError::PoweredOff))
+    }
+
+    /// Has the next scene of the clocked systolic array recorded.
+    ///
+    /// # Errors
+    /// [`CardError::PoweredOff`].
+    pub(crate) fn record(&self, waves: Waves) -> Result<(), CardError> {
+        self.ask(|answer| Request::Record(waves, answer)).ok_or(CardError::PoweredOff)
+    }
+
+    /// The waveform that was recorded last, if there is one.
+    ///
+    /// # Errors
+    /// [`CardError::PoweredOff`].
+    pub(crate) fn take_recorded(&self) -> Result<Option<Vec<u8>>, CardError> {
+        self.ask(Request::TakeRecorded).ok_or(CardError::PoweredOff)
     }
 
     /// Tells the card's thread to end.

@@ -26,6 +26,8 @@ pub struct Line {
     pub slope: i64,
     /// Depth.
     pub plane: DepthPlane,
+    /// The gradient of `plane` means nothing but at drawn pixels: it is large, or has wrapped.
+    pub steep: bool,
 }
 
 impl Line {
@@ -59,7 +61,8 @@ impl Line {
             return None;
         }
         let (minor, slope) = walk(ends[0], length, rise, axis, first);
-        Some(Line { axis, steps: [first, beyond], minor, slope, plane: DepthPlane::line(v, axis, length, format) })
+        let (plane, steep) = DepthPlane::line(v, axis, length, format);
+        Some(Line { axis, steps: [first, beyond], minor, slope, plane, steep })
     }
 
     /// Minor pixel at step `step`.

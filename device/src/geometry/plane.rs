@@ -35,6 +35,16 @@ pub struct DepthPlane {
     pub maximum: i32,
 }
 
+/// Gradients of at least this share of the depth range a pixel make a plane steep: a smaller one cannot
+/// overflow 64 bits anywhere within 64 pixels of a covered one.
+const STEEP: f64 = 1.0 / 8.0;
+
+/// Whether a depth that changes by `rise / run` for one u, in depth steps, makes its plane steep.
+#[inline(always)]
+fn steep(rise: i64, inverse_run: f64, format: DepthFormat) -> bool {
+    rise.unsigned_abs() as f64 * inverse_run * f64::from(PIXEL) >= f64::from(format.maximum()) * STEEP
+}
+
 /// Which of the pixel's coordinates a line's depth follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
@@ -45,15 +55,16 @@ pub enum Axis {
 }
 
 impl DepthPlane {
-    /// The plane through three vertices; `area` = twice the signed area, not 0.
+    /// The plane through three vertices, and whether it is steep: its gradients may have wrapped, and only
+    /// the values of covered pixels mean something. `area` = twice the signed area, not 0.
     #[must_use]
     #[inline(always)]
-    pub fn triangle(v: &[ScreenVertex; 3], area: i64, inverse: f64, format: DepthFormat) -> DepthPlane {
+    pub fn triangle(v: &[ScreenVertex; 3], area: i64, inverse: f64, format: DepthFormat) -> (DepthPlane, bool) {
         let (mut minimum, mut maximum) = (v[0].z.min(v[1].z), v[0].z.max(v[1].z));
         (minimum, maximum) = (minimum.min(v[2].z), maximum.max(v[2].z));
         let anchor = least(&least(&v[0], &v[1]), &v[2]);
         if minimum == maximum {
-            return DepthPlane::flat(&anchor, format);
+            return (DepthPlane::flat(&anchor, format), false);
         }
         let (x1, y1, z1) = difference(&v[1], &v[0]);
         let (x2, y2, z2) = difference(&v[2], &v[0]);
@@ -70,21 +81,23 @@ impl DepthPlane {
             let n = i128::from(a) * i128::from(px) + i128::from(b) * i128::from(py);
             ((n << (fraction + 1)) + i128::from(area)).div_euclid(2 * i128::from(area)) as i64
         };
-        DepthPlane::new(
+        let plane = DepthPlane::new(
             &anchor,
             (i64::from(anchor.z) << fraction).wrapping_add(offset),
             [round_ratio(a, 8 + fraction, area, inverse), round_ratio(b, 8 + fraction, area, inverse)],
             [minimum, maximum],
             format,
-        )
+        );
+        (plane, steep(a.abs().max(b.abs()), inverse, format))
     }
 
-    /// Depth along a line that runs `length` u along `axis` (not 0) from `v[0]` to `v[1]`.
+    /// Depth along a line that runs `length` u along `axis` (not 0) from `v[0]` to `v[1]`, and whether it is
+    /// steep.
     #[must_use]
-    pub fn line(v: &[ScreenVertex; 2], axis: Axis, length: i64, format: DepthFormat) -> DepthPlane {
+    pub fn line(v: &[ScreenVertex; 2], axis: Axis, length: i64, format: DepthFormat) -> (DepthPlane, bool) {
         let anchor = least(&v[0], &v[1]);
         if v[0].z == v[1].z {
-            return DepthPlane::flat(&anchor, format);
+            return (DepthPlane::flat(&anchor, format), false);
         }
         let sign = length.signum();
         let rise = (i64::from(v[1].z) - i64::from(v[0].z)) * sign;
@@ -93,13 +106,14 @@ impl DepthPlane {
         let [px, py] = to_centre(&anchor);
         let along = if axis == Axis::X { px } else { py };
         let gradient = round_ratio(rise, 8 + fraction, length, inverse);
-        DepthPlane::new(
+        let plane = DepthPlane::new(
             &anchor,
             (i64::from(anchor.z) << fraction).wrapping_add(round_ratio(rise * along, fraction, length, inverse)),
             if axis == Axis::X { [gradient, 0] } else { [0, gradient] },
             [v[0].z.min(v[1].z), v[0].z.max(v[1].z)],
             format,
-        )
+        );
+        (plane, steep(rise, inverse, format))
     }
 
     /// The same depth everywhere: that of `vertex`.

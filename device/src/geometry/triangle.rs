@@ -35,6 +35,8 @@ pub struct Triangle {
     pub short: [Edge; 2],
     /// Depth.
     pub plane: DepthPlane,
+    /// The gradients of `plane` mean nothing but at covered pixels: they are large, or have wrapped.
+    pub steep: bool,
 }
 
 impl Triangle {
@@ -58,11 +60,13 @@ impl Triangle {
         if area == 0 {
             return None;
         }
+        let (plane, steep) = DepthPlane::triangle(v, area, 1.0 / area as f64, format);
         let triangle = Triangle {
             rows,
             long: Edge::new(top, bottom, rows[0]),
             short: [Edge::new(top, middle, rows[0]), Edge::new(middle, bottom, rows[1])],
-            plane: DepthPlane::triangle(v, area, 1.0 / area as f64, format),
+            plane,
+            steep,
         };
         Some((triangle, columns))
     }

@@ -1,25 +1,31 @@
 //! Memory: video memory and Za RAM behind their windows.
 //!
-//! Duties: bounds of the memories, bursts, a note of what changed for scan-out.
+//! Duties: bounds of the memories, bursts, a note of what changed for scan-out; which frames have blocks
+//! that are cleared in Za RAM only ([`areas`]).
 //! Inputs: bursts of the host; the units, which work on the words directly.
 //! Outputs: words; [`VideoMemory::generation`].
 //! Clocks: none of its own; each unit charges its accesses. The interface is [`LINE_BYTES`] wide.
 //!
 //! Words are 32 bits; the first of two 16-bit pixels stands in a word's low half.
 
+pub(crate) mod areas;
 mod za_ram;
 
 pub(crate) use za_ram::ZaRam;
 
+use crate::probe::account::Account;
+use areas::{Areas, Parts};
 use std::ops::Range;
 
 /// Bytes that video memory moves in one clock: one line, at an address that is a multiple of it.
 pub(crate) const LINE_BYTES: u64 = 64;
 
-/// Video memory.
+/// Video memory, and Za RAM beside it: the host sees neither while a packet is at work.
 #[derive(Debug)]
 pub(crate) struct VideoMemory {
     words: Vec<u32>,
+    za: ZaRam,
+    areas: Areas,
     /// Counts changes that can be seen in the frame shown.
     generation: u64,
     /// Words of the frame shown; host writes elsewhere cannot be seen.
@@ -31,9 +37,17 @@ pub(crate) struct VideoMemory {
 }
 
 impl VideoMemory {
-    /// `bytes` bytes of zeros. The host's pages come when they are first touched.
-    pub(crate) fn new(bytes: u32) -> VideoMemory {
-        VideoMemory { words: vec![0; (bytes / 4) as usize], generation: 0, watched: 0..0, remembered: 0..0, foreign: 0 }
+    /// `bytes` bytes of zeros, and Za RAM. The host's pages come when they are first touched.
+    pub(crate) fn new(bytes: u32, za_ram: u32) -> VideoMemory {
+        VideoMemory {
+            words: vec![0; (bytes / 4) as usize],
+            za: ZaRam::new(za_ram),
+            areas: Areas::default(),
+            generation: 0,
+            watched: 0..0,
+            remembered: 0..0,
+            foreign: 0,
+        }
     }
 
     /// All words.
@@ -41,10 +55,26 @@ impl VideoMemory {
         &self.words
     }
 
-    /// All words, to change some of them.
+    /// All words, to change some of them without regard to what anybody remembers.
     pub(crate) fn words_mut(&mut self) -> &mut [u32] {
         self.generation += 1;
         self.foreign += 1;
+        &mut self.words
+    }
+
+    /// All words, for a unit that reads `read` and changes `changed` bytes: what is cleared there in Za RAM
+    /// only comes to memory first.
+    pub(crate) fn using(&mut self, read: Range<u64>, changed: Range<u64>, account: &mut Account) -> &mut [u32] {
+        if !self.areas.all().is_empty() {
+            let (mut parts, areas) = self.parts();
+            areas.release(&mut parts, read, false, account);
+            areas.release(&mut parts, changed.clone(), true, account);
+        }
+        self.generation += 1;
+        let changed = (changed.start / 4) as usize..changed.end.div_ceil(4) as usize;
+        if changed.start < self.remembered.end && self.remembered.start < changed.end {
+            self.foreign += 1;
+        }
         &mut self.words
     }
 
@@ -52,6 +82,33 @@ impl VideoMemory {
     pub(crate) fn drawing(&mut self) -> &mut [u32] {
         self.generation += 1;
         &mut self.words
+    }
+
+    /// Both memories and the frames with logical clears, for the pipeline.
+    pub(crate) fn parts(&mut self) -> (Parts<'_>, &mut Areas) {
+        self.generation += 1;
+        (Parts { video: &mut self.words, za: self.za.words_mut(), foreign: self.foreign }, &mut self.areas)
+    }
+
+    /// Za RAM.
+    pub(crate) fn za(&self) -> &ZaRam {
+        &self.za
+    }
+
+    /// Za RAM, for the host, which can change what is shown by it.
+    pub(crate) fn za_mut(&mut self) -> &mut ZaRam {
+        self.generation += 1;
+        &mut self.za
+    }
+
+    /// The frames with logical clears.
+    pub(crate) fn areas(&self) -> &Areas {
+        &self.areas
+    }
+
+    /// The frames with logical clears, to put those of a snapshot there.
+    pub(crate) fn set_areas(&mut self, areas: Areas) {
+        self.areas = areas;
     }
 
     /// Reads from word `index` on; returns how many words there are, the rest stay as they are.
@@ -120,7 +177,7 @@ mod tests {
 
     #[test]
     fn write_outside_the_frame_shown_is_no_change() {
-        let mut memory = VideoMemory::new(4096);
+        let mut memory = VideoMemory::new(4096, 0);
         memory.watch(16..32);
         memory.write(0, &[1; 16]);
         memory.write(32, &[1; 16]);
@@ -132,7 +189,7 @@ mod tests {
 
     #[test]
     fn foreign_counts_what_may_have_changed_remembered_words() {
-        let mut memory = VideoMemory::new(4096);
+        let mut memory = VideoMemory::new(4096, 0);
         memory.remember(16..32);
         memory.write(0, &[1; 16]);
         memory.write(32, &[1; 16]);
@@ -146,7 +203,7 @@ mod tests {
 
     #[test]
     fn read_beyond_the_end_says_how_far_it_came() {
-        let mut memory = VideoMemory::new(4096);
+        let mut memory = VideoMemory::new(4096, 0);
         assert_eq!(memory.write(1022, &[5; 8]), 2);
         let mut words = [9; 4];
         assert_eq!(memory.read(1023, &mut words), 1);

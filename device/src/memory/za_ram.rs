@@ -1,7 +1,8 @@
 //! Za RAM: static memory of the Za path, seen by the host through its own window.
 //!
 //! Duties: holds words; costs the host nothing until somebody writes to it.
-//! Inputs and outputs: bursts of the host. Clocks: none; no unit of this card works on it yet.
+//! Inputs and outputs: bursts of the host; the Za unit, which works on the words directly.
+//! Clocks: none of its own; the Za unit charges its accesses.
 
 /// Za RAM.
 #[derive(Debug)]
@@ -35,6 +36,17 @@ impl ZaRam {
             self.stored[index..index + count].copy_from_slice(&words[..count]);
         }
         count
+    }
+
+    /// All words, for the Za unit.
+    pub(crate) fn words_mut(&mut self) -> &mut [i32] {
+        self.stored.resize(self.words, 0);
+        bytemuck::cast_slice_mut(&mut self.stored)
+    }
+
+    /// All words that were ever written; the others are 0.
+    pub(crate) fn words(&self) -> &[i32] {
+        bytemuck::cast_slice(&self.stored)
     }
 
     /// Everything that was ever written, for a snapshot; empty when nothing was.

@@ -22,22 +22,20 @@ use account::Account;
 use pixel::{KIND_CLEAR, PixelProbe};
 use zga_abi::packet::PROBE_RECORD_WORDS;
 use zga_abi::{Counter, Reg};
-use zga_firmware::checked::{Clear, Target};
+use zga_firmware::checked::Clear;
 
 /// The pixel history: watches a pixel during clears and draws, writes its records to video memory
 /// after each.
 #[derive(Debug, Default)]
 pub(crate) struct Probe {
     watch: PixelProbe,
-    target: Option<Target>,
     /// Draws of the scene so far.
     pub(crate) draws: u32,
 }
 
 impl Probe {
     /// A scene begins: draws count from 0.
-    pub(crate) fn begin_scene(&mut self, target: &Target) {
-        self.target = Some(*target);
+    pub(crate) fn begin_scene(&mut self) {
         self.draws = 0;
     }
 
@@ -53,14 +51,14 @@ impl Probe {
         self.aim(registers, draw)
     }
 
-    /// Notes a clear that is about to be done, if the probe is enabled and its pixel is cleared.
-    pub(crate) fn clear(&mut self, registers: &RegisterFile, memory: &[u32], clear: &Clear) {
-        let (draws, depth) = (self.draws, self.target.and_then(|target| target.depth));
+    /// Notes a clear that is about to be done, if the probe is enabled and its pixel is cleared; `depth` tells a
+    /// pixel's depth as it stands.
+    pub(crate) fn clear(&mut self, registers: &RegisterFile, clear: &Clear, depth: impl FnOnce(u32, u32) -> u32) {
+        let draws = self.draws;
         let Some(watch) = self.aim(registers, draws) else { return };
         let (x, y, area) = (watch.x, watch.y, clear.area);
         if (area.x..area.right).contains(&x) && (area.y..area.bottom).contains(&y) {
-            let word = depth.map(|depth| (depth.base / 4 + y * (depth.pitch / 4) + x) as usize);
-            let before = word.and_then(|word| memory.get(word)).copied().unwrap_or(0);
+            let before = depth(x, y);
             watch.clear(before, clear.depth.unwrap_or(before), clear.colour.unwrap_or(0));
         }
     }

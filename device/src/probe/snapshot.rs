@@ -11,9 +11,11 @@ use crate::card::Board;
 use crate::error::CardError;
 use crate::frontend::fifo::FifoState;
 use crate::frontend::ring::Pointers;
+use crate::memory::areas::Areas;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::SeqCst;
 use zga_abi::bus::FIFO_WORDS;
+use zga_abi::format::HiddenSurface;
 use zga_abi::{Counter, Fault};
 use zga_firmware::{Processor, ProcessorState};
 
@@ -71,16 +73,24 @@ pub(crate) struct State {
     pub(crate) za_bytes: u32,
     /// Words of Za RAM, or none if it was never written.
     pub(crate) za: Vec<u32>,
+    /// The frames with logical clears, as [`Areas::to_words`] has them.
+    pub(crate) areas: Vec<u32>,
     /// Words of video memory.
     pub(crate) video: Vec<u32>,
 }
 
 /// The state of `board`.
-pub(crate) fn save(board: &mut Board) -> State {
+///
+/// # Errors
+/// [`CardError::HeldScene`].
+pub(crate) fn save(board: &mut Board) -> Result<State, CardError> {
     let Board { backplane, frontend, blocks, .. } = board;
+    if blocks.pipeline.holds_scene() {
+        return Err(CardError::HeldScene);
+    }
     backplane.publish(&mut blocks.account);
-    let (za_ram, ring) = (backplane.za_ram.lock(), backplane.ring.pointers());
-    State {
+    let (memory, ring) = (backplane.memory.lock(), backplane.ring.pointers());
+    Ok(State {
         registers: backplane.registers.save(),
         interrupt_status: backplane.interrupts.status(),
         interrupt_enable: backplane.interrupts.enable(),
@@ -94,10 +104,11 @@ pub(crate) fn save(board: &mut Board) -> State {
         draws: blocks.probe.draws,
         blanks: blocks.scanout.blanks(),
         counters: *backplane.counters.lock().values(),
-        za_bytes: za_ram.bytes(),
-        za: za_ram.save(),
-        video: backplane.memory.lock().words().to_vec(),
-    }
+        za_bytes: memory.za().bytes(),
+        za: memory.za().save(),
+        areas: memory.areas().to_words(),
+        video: memory.words().to_vec(),
+    })
 }
 
 /// Puts `state` in place of the state of `board`; all or nothing.
@@ -108,13 +119,16 @@ pub(crate) fn restore(board: &mut Board, state: &State) -> Result<(), CardError>
     let processor = board.processor_of(&state.processor).map_err(impossible)?;
     let Board { backplane, frontend, blocks, .. } = board;
     let mut memory = backplane.memory.lock();
-    let mut za_ram = backplane.za_ram.lock();
     same_size("video memory", 4 * state.video.len() as u32, 4 * memory.words().len() as u32)?;
-    same_size("Za RAM", state.za_bytes, za_ram.bytes())?;
+    same_size("Za RAM", state.za_bytes, memory.za().bytes())?;
+    let open = processor.target().filter(|target| target.hidden_surface == HiddenSurface::Za);
+    let areas = Areas::from_words(&state.areas, memory.words().len(), memory.za().bytes(), open)
+        .ok_or_else(|| CardError::Impossible { what: "logical clears of a frame that cannot be".to_owned() })?;
     let needed = check_fifo(&state.fifo)?;
 
     memory.words_mut().copy_from_slice(&state.video);
-    za_ram.load(&state.za);
+    memory.za_mut().load(&state.za);
+    memory.set_areas(areas);
     backplane.registers.load(&state.registers);
     backplane.counters.lock().set_values(state.counters);
     blocks.account.clear();
@@ -123,8 +137,7 @@ pub(crate) fn restore(board: &mut Board, state: &State) -> Result<(), CardError>
     blocks.pipeline.power_off();
     blocks.probe.reset();
     if let Some(target) = processor.target() {
-        blocks.pipeline.begin_scene(target);
-        blocks.probe.begin_scene(target);
+        blocks.pipeline.resume_scene(target);
     }
     blocks.probe.draws = state.draws;
     blocks.powered = processor.units_powered();

@@ -6,7 +6,7 @@
 //! | bytes | content |
 //! | --- | --- |
 //! | 8 | `ZGASNAP` and a zero |
-//! | 4 | version, 1 |
+//! | 4 | version, 2 |
 //! | ... | sections: the card (tag 1), then Za RAM (tag 2) and video memory (tag 3) in order |
 //!
 //! A section is: 8 bytes xxh3 of what follows in it, 4 bytes tag, 4 bytes length, content. Memory is
@@ -22,7 +22,7 @@ use zga_abi::Counter;
 use zga_firmware::ProcessorState;
 
 const MAGIC: &[u8; 8] = b"ZGASNAP\0";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const TAG_CARD: u32 = 1;
 const TAG_ZA: u32 = 2;
 const TAG_VIDEO: u32 = 3;
@@ -74,7 +74,7 @@ impl State {
         ];
         words.extend(self.processor.to_words());
         let counters: Vec<u32> = self.counters.iter().flat_map(|&c| [c as u32, (c >> 32) as u32]).collect();
-        for list in [&counters, &self.registers, &self.fifo.packet, &self.fifo.queued] {
+        for list in [&counters, &self.registers, &self.fifo.packet, &self.fifo.queued, &self.areas] {
             words.push(list.len() as u32);
             words.extend(list);
         }
@@ -88,7 +88,7 @@ impl State {
             return Err(damaged(0, "the magic bytes of a snapshot"));
         }
         if reader.word("the version")? != VERSION {
-            return Err(damaged(8, "version 1"));
+            return Err(damaged(8, "version 2"));
         }
         let content = reader.section(TAG_CARD)?;
         let card = reader.at - content.len();
@@ -133,6 +133,7 @@ fn card_state(fields: &mut Reader<'_>) -> Result<(State, u32, usize), CardError>
         counters: values,
         registers: fields.list()?,
         fifo: FifoState { packet: fields.list()?, queued: fields.list()?, taken },
+        areas: fields.list()?,
         za_bytes,
         za: Vec::new(),
         video: Vec::new(),

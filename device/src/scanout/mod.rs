@@ -2,7 +2,8 @@
 //!
 //! Duties: makes vertical blanks, on demand (one for each PRESENT) or continuous (one every
 //! SCANOUT_PERIOD); shows the frame that the SCANOUT registers describe; writes a frame back.
-//! Inputs: SCANOUT registers, PRESENT and WRITE_BACK from the firmware, the frame in video memory.
+//! For blocks of the frame that are cleared in Za RAM only it puts the background out.
+//! Inputs: SCANOUT registers, PRESENT and WRITE_BACK from the firmware, the frame in video memory, Za words.
 //! Outputs: frames on the display cable; FRAME_COUNT; the vertical blank interrupt; words in memory.
 //! Clocks (`cycles.scanout`): 1 for each pixel put out, at every vertical blank and every write back:
 //! the display takes one pixel a clock, and takes it whether or not anybody looks at the screen.
@@ -17,7 +18,7 @@ pub(crate) mod monitor;
 use crate::bus::backplane::Backplane;
 use crate::memory::VideoMemory;
 use crate::probe::account::{Account, Clocks};
-use compose::compose;
+use compose::{Cleared, compose};
 use monitor::Frame;
 use parking_lot::MutexGuard;
 use std::sync::Arc;
@@ -107,7 +108,7 @@ impl Scanout {
         self.blanks = self.blanks.saturating_add(1);
         let count = backplane.registers.get(Reg::FrameCount);
         if let Some(surface) = shown(backplane, memory) {
-            charge(account, &surface);
+            charge(account, &surface, &Cleared::of(memory, &surface));
             if backplane.cable.is_watched() {
                 self.put_out(backplane, memory, surface);
             }
@@ -126,7 +127,7 @@ impl Scanout {
         }
         if !unchanged || self.kept.is_empty() {
             let mut pixels = self.spare();
-            compose(memory.words(), &surface, Arc::make_mut(&mut pixels));
+            compose(memory.words(), &surface, &Cleared::of(memory, &surface), Arc::make_mut(&mut pixels));
             self.kept.push(pixels);
             let first = (surface.base / 4) as usize;
             memory.watch(first..first + (surface.pitch as usize / 4) * surface.height as usize);
@@ -164,11 +165,13 @@ impl Scanout {
         account: &mut Account,
     ) {
         let Some(surface) = shown(backplane, memory) else { return };
-        compose(memory.words(), &surface, &mut self.scratch);
-        let room = memory.words_mut().get_mut((destination / 4) as usize..).unwrap_or_default();
+        let cleared = Cleared::of(memory, &surface);
+        compose(memory.words(), &surface, &cleared, &mut self.scratch);
+        charge(account, &surface, &cleared);
+        let bytes = u64::from(destination)..u64::from(destination) + 4 * self.scratch.len() as u64;
+        let room = memory.using(0..0, bytes, account).get_mut((destination / 4) as usize..).unwrap_or_default();
         if let Some(room) = room.get_mut(..self.scratch.len()) {
             room.copy_from_slice(&self.scratch);
-            charge(account, &surface);
         }
     }
 
@@ -195,10 +198,11 @@ fn period(backplane: &Backplane) -> Duration {
 }
 
 /// Charges a frame put out.
-fn charge(account: &mut Account, surface: &Surface) {
+fn charge(account: &mut Account, surface: &Surface, cleared: &Cleared<'_>) {
     let pixels = u64::from(surface.width) * u64::from(surface.height);
     account.add(Counter::ScanoutFrames, 1);
     account.add(Counter::ScanoutPixels, pixels);
+    account.add(Counter::ScanoutBackgroundBlocks, cleared.blocks());
     account.charge(Counter::CyclesScanout, Clocks(pixels));
 }
 

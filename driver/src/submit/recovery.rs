@@ -2,6 +2,7 @@
 
 use zga_abi::bus::{Bus, FLOATING};
 use zga_abi::fault::FaultCode;
+use zga_abi::format::HiddenSurface;
 use zga_abi::packet::{Opcode, header};
 use zga_abi::registers::Reg;
 
@@ -45,6 +46,12 @@ impl std::fmt::Display for FaultSource {
 /// The card was reset, its registers were set to what they were before the packet, an open scene was
 /// begun again, and everything behind the packet is sent again with the next flush, fence or wait.
 /// Video memory is kept, so what the scene had drawn into it stays.
+///
+/// The systolic array and the tile unit hold a scene's depths on the chip, or the whole scene until its end: a
+/// reset loses them. On these paths the open scene is sent again from its BEGIN_SCENE on, without the refused
+/// packet, and its fences count as not reached until then. A scene that begins with a clear of everything becomes
+/// exactly what it would have been. The vertices that its draws read from video memory must stay as they are until
+/// the scene has ended. What a refused END_SCENE should have drawn is lost.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the card refused {packet} at word {offset:#x} of the {from}: {code_name} at word {word} ({field}), found {value:#010x}"
@@ -75,27 +82,95 @@ pub struct CardFault {
 pub(super) struct Executed {
     image: RegisterImage,
     in_scene: bool,
+    /// Number of the last fence.
+    fence: u32,
+    /// The open scene, if the card loses it with a reset.
+    held: Option<HeldScene>,
 }
 
-impl Executed {
-    pub fn reset() -> Executed {
-        Executed { image: RegisterImage::reset(), in_scene: false }
-    }
+/// An open scene that has to be sent again as a whole.
+#[derive(Debug)]
+struct HeldScene {
+    /// Registers and last fence before it.
+    image: RegisterImage,
+    fence: u32,
+    /// Its packets from BEGIN_SCENE on, fences among them.
+    words: Vec<u32>,
+}
 
-    /// Follows packets that were executed.
-    pub fn follow(&mut self, words: &[u32]) {
-        self.image.follow(words);
+impl HeldScene {
+    /// Keeps what draws, what it needs, and the fences, so that batches stay as long as they were.
+    fn keep(&mut self, words: &[u32]) {
         for packet in packets(words) {
-            match packet.opcode() {
-                Some(Opcode::BeginScene) => self.in_scene = true,
-                Some(Opcode::EndScene) => self.in_scene = false,
-                _ => {}
+            let draws = packet.needs_scene() || packet.opcode() == Some(Opcode::BeginScene);
+            if draws || matches!(packet.opcode(), Some(Opcode::RegisterWrite | Opcode::Fence)) {
+                self.words.extend_from_slice(packet.words);
             }
         }
     }
 }
 
+impl Executed {
+    pub fn reset() -> Executed {
+        Executed { image: RegisterImage::reset(), in_scene: false, fence: 0, held: None }
+    }
+
+    /// Follows packets that were executed.
+    pub fn follow(&mut self, words: &[u32]) {
+        // A scene that begins and ends here leaves nothing to keep.
+        let (mut open_from, mut ends) = (None, false);
+        for packet in packets(words) {
+            match packet.opcode() {
+                Some(Opcode::BeginScene) => open_from = Some(packet.start),
+                Some(Opcode::EndScene) => (open_from, ends) = (None, true),
+                _ => {}
+            }
+        }
+        if let Some(start) = open_from {
+            let (before, scene) = words.split_at(start);
+            self.advance(before);
+            self.in_scene = true;
+            let (image, fence) = (&self.image, self.fence);
+            self.held =
+                image.is_lost_with_a_reset().then(|| HeldScene { image: image.clone(), fence, words: Vec::new() });
+            self.keep_and_advance(scene);
+        } else if ends {
+            (self.in_scene, self.held) = (false, None);
+            self.advance(words);
+        } else {
+            self.keep_and_advance(words);
+        }
+    }
+
+    fn keep_and_advance(&mut self, words: &[u32]) {
+        if let Some(held) = &mut self.held {
+            held.keep(words);
+        }
+        self.advance(words);
+    }
+
+    /// Follows registers and fences.
+    fn advance(&mut self, words: &[u32]) {
+        self.image.follow(words);
+        let fences = packets(words).filter(|packet| packet.opcode() == Some(Opcode::Fence));
+        self.fence = fences.last().and_then(|packet| packet.words.get(1).copied()).unwrap_or(self.fence);
+    }
+}
+
+impl RegisterImage {
+    /// Whether a scene that began with these registers is lost, in whole or in part, when the card is reset.
+    fn is_lost_with_a_reset(&self) -> bool {
+        let path = HiddenSurface::from_code(self.get(Reg::HiddenSurface.offset()));
+        matches!(path, Some(HiddenSurface::Systolic | HiddenSurface::Tile))
+    }
+}
+
 impl Queue {
+    /// Takes note of registers that were written past the stream, as a packet would have written them.
+    pub fn note_registers(&mut self, packet: &[u32]) {
+        self.executed.image.follow(packet);
+    }
+
     /// Looks whether the card refused a packet; if so resets it and arranges that the rest goes on.
     ///
     /// `None` if there is no error. Nothing is sent yet: the next flush does that.
@@ -154,8 +229,16 @@ impl Queue {
         let scene_opens = place.is_some() && opcode == Some(Opcode::BeginScene);
         let scene_ends = place.is_some() && opcode == Some(Opcode::EndScene);
         let mut again = Vec::with_capacity(rest.len() + self.pending.len() + 1);
-        if std::mem::take(&mut self.executed.in_scene) && !scene_ends {
-            again.push(header(Opcode::BeginScene, 0));
+        let (in_scene, held) = (std::mem::take(&mut self.executed.in_scene), self.executed.held.take());
+        match held {
+            _ if !in_scene || scene_ends => {}
+            None => again.push(header(Opcode::BeginScene, 0)),
+            Some(HeldScene { image, fence, words }) => {
+                again.extend_from_slice(&words);
+                self.executed.image = image;
+                self.executed.fence = fence;
+                self.completed = fence;
+            }
         }
         rest.append(&mut self.pending);
         if scene_opens {

@@ -127,7 +127,7 @@ fn draw_state<H: Hardware>(hardware: &H, target: &Target) -> Result<DrawState, F
     let effects_claim = registers::sample(hardware, Reg::Effects);
     let capability = hardware.register(Reg::CapabilityEffects, 0);
     let effects = registers::effects(effects_claim, capability)?;
-    effects_claim.require(target.depth.is_some() || !effects.contains(Effects::DEPTH))?;
+    effects_claim.require(target.has_depth() || !effects.contains(Effects::DEPTH))?;
 
     let control = registers::sample(hardware, Reg::DepthControl);
     Ok(DrawState {

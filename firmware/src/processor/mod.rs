@@ -167,5 +167,6 @@ fn outcome(work: Result<(), Stopped>) -> Result<(), Fault> {
         // The host throws the packet away; there is nothing to report.
         Ok(()) | Err(Stopped::Reset) => Ok(()),
         Err(Stopped::Watchdog) => Err(Fault::new(FaultCode::Watchdog, 0, 0)),
+        Err(Stopped::SceneFull) => Err(Fault::new(FaultCode::SceneFull, 0, 0)),
     }
 }

@@ -3,12 +3,17 @@
 use super::claim::Claim;
 use super::memory::LARGEST_SIDE;
 use super::{bad_length, memory::VideoMemory};
-use crate::checked::Rectangle;
+use crate::checked::{Rectangle, SystolicSetting, ZaSetting};
 use crate::hardware::Hardware;
-use zga_abi::format::{DepthFormat, HiddenSurface, PixelFormat};
+use zga_abi::format::{
+    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, TokenColour, TokenPorts, ZaPrediction,
+};
 use zga_abi::packet::PROBE_RECORD_WORDS;
 use zga_abi::register::Access;
 use zga_abi::{Effects, Fault, FaultCode, Reg, Units};
+
+/// Bit 8 of ZA_PREDICTION: no block is bypassed.
+const ZA_NO_BYPASS: u32 = 1 << 8;
 
 /// The value of a one-word register, not checked yet.
 pub(super) fn sample<H: Hardware>(hardware: &H, register: Reg) -> Claim {
@@ -45,6 +50,49 @@ pub(super) fn hidden_surface(claim: Claim, paths: u32) -> Result<HiddenSurface, 
         return Err(claim.refuse(FaultCode::Unsupported));
     }
     Ok(path)
+}
+
+/// How units with a clocked model are simulated.
+pub(super) fn fidelity(claim: Claim) -> Result<Fidelity, Fault> {
+    claim.mean(Fidelity::from_code(claim.value))
+}
+
+/// Width and height of a block of pixels.
+pub(super) fn za_block(claim: Claim) -> Result<[u32; 2], Fault> {
+    size(claim).map(|(width, height)| [width, height])
+}
+
+/// How the least depth in a block is predicted, and whether blocks are bypassed.
+pub(super) fn za_prediction(claim: Claim) -> Result<(ZaPrediction, bool), Fault> {
+    let prediction = claim.mean(ZaPrediction::from_code(claim.value & 0x3))?;
+    Ok((prediction, claim.value & ZA_NO_BYPASS == 0))
+}
+
+/// The Za unit's registers.
+pub(super) fn za(block: Claim, prediction: Claim, base: Claim) -> Result<ZaSetting, Fault> {
+    let block = za_block(block)?;
+    let (prediction, bypass) = za_prediction(prediction)?;
+    base.multiple_of(super::memory::CHUNK)?;
+    Ok(ZaSetting { base: base.value / 4, block, prediction, bypass })
+}
+
+/// The variant of the systolic array: every value has a meaning.
+pub(super) fn systolic(claim: Claim) -> SystolicSetting {
+    let bit = |number: u32| claim.value >> number & 1;
+    SystolicSetting {
+        end_test: if bit(0) == 0 { EndTest::Negative } else { EndTest::Zero },
+        ports: if bit(1) == 0 { TokenPorts::Swapped } else { TokenPorts::Merged },
+        colour: if bit(2) == 0 { TokenColour::Tag } else { TokenColour::Value },
+        super_buffer: bit(3) == 1,
+    }
+}
+
+/// Width and height of a tile.
+pub(super) fn tile_size(claim: Claim) -> Result<[u32; 2], Fault> {
+    let (width, height) = pair(claim.value);
+    let sides = |side: u32| side.is_power_of_two() && (4..=64).contains(&side);
+    claim.require(sides(width) && sides(height))?;
+    Ok([width, height])
 }
 
 /// Bits of a pixel that coordinates are snapped to.
@@ -141,6 +189,9 @@ impl Write {
             Reg::ColourFormat | Reg::ScanoutFormat => pixel_format(claim).map(|_| ()),
             Reg::DepthFormat => depth_format(claim).map(|_| ()),
             Reg::SubpixelBits => subpixel_bits(claim).map(|_| ()),
+            Reg::ZaBlock => za_block(claim).map(|_| ()),
+            Reg::ZaPrediction => za_prediction(claim).map(|_| ()),
+            Reg::TileSize => tile_size(claim).map(|_| ()),
             Reg::HiddenSurface => hidden_surface(claim, hardware.register(Reg::CapabilityPaths, 0)).map(|_| ()),
             Reg::Effects => effects(claim, hardware.register(Reg::CapabilityEffects, 0)).map(|_| ()),
             _ => Ok(()),

@@ -10,6 +10,7 @@ use super::power::path_unit;
 use super::{Processor, at_header, bad_length, outcome, registers};
 use crate::checked::{Clear, DepthSurface, Surface, Target};
 use crate::hardware::Hardware;
+use zga_abi::format::HiddenSurface;
 use zga_abi::packet::{CLEAR_COLOUR, CLEAR_DEPTH};
 use zga_abi::{Fault, FaultCode, Reg};
 
@@ -17,7 +18,7 @@ use zga_abi::{Fault, FaultCode, Reg};
 const DEPTH_BYTES: u32 = 4;
 
 /// The registers that begin scene samples.
-pub(super) const TARGET_REGISTERS: [Reg; 9] = [
+pub(super) const TARGET_REGISTERS: [Reg; 15] = [
     Reg::TargetSize,
     Reg::ColourBase,
     Reg::ColourPitch,
@@ -27,6 +28,12 @@ pub(super) const TARGET_REGISTERS: [Reg; 9] = [
     Reg::DepthFormat,
     Reg::HiddenSurface,
     Reg::SubpixelBits,
+    Reg::Fidelity,
+    Reg::ZaBlock,
+    Reg::ZaPrediction,
+    Reg::ZaBase,
+    Reg::SystolicVariant,
+    Reg::TileSize,
 ];
 
 /// A scene that was begun.
@@ -55,6 +62,12 @@ impl Scene {
             depth_format,
             path,
             subpixel_bits,
+            fidelity,
+            za_block,
+            za_prediction,
+            za_base,
+            systolic,
+            tile,
         ] = claims;
         let memory = VideoMemory::of(hardware);
 
@@ -74,13 +87,25 @@ impl Scene {
             Some(DepthSurface { base: depth_base.value, pitch: depth_pitch.value })
         };
 
-        let paths = hardware.register(Reg::CapabilityPaths, 0);
+        let hidden_surface = registers::hidden_surface(path, hardware.register(Reg::CapabilityPaths, 0))?;
+        let za = registers::za(za_block, za_prediction, za_base)?;
+        if hidden_surface == HiddenSurface::Za {
+            let [across, down] = za.blocks(width, height);
+            let end = u64::from(za_base.value) + 4 * u64::from(across) * u64::from(down);
+            if end > u64::from(hardware.register(Reg::ZaRamSize, 0)) {
+                return Err(za_base.refuse(FaultCode::OutOfMemory));
+            }
+        }
         let target = Target {
             colour,
             depth,
             depth_format,
             subpixel_bits: registers::subpixel_bits(subpixel_bits)?,
-            hidden_surface: registers::hidden_surface(path, paths)?,
+            hidden_surface,
+            fidelity: registers::fidelity(fidelity)?,
+            za,
+            systolic: registers::systolic(systolic),
+            tile: registers::tile_size(tile)?,
         };
         Ok(Scene { registers: values, target })
     }
@@ -127,7 +152,7 @@ impl Processor {
 
         planes.require(planes.value & !(CLEAR_COLOUR | CLEAR_DEPTH) == 0)?;
         if clears(CLEAR_DEPTH) {
-            planes.require(target.depth.is_some())?;
+            planes.require(target.has_depth())?;
             depth.require(depth.value <= target.depth_format.maximum())?;
         }
         if planes.value == 0 {

@@ -96,6 +96,13 @@ pub fn target(mock: &Mock, target: &Target) {
         assert!(a.1 <= b.0 || b.1 <= a.0, "{target:?}");
     }
     assert!(matches!(target.subpixel_bits, 4 | 8));
+    let [across, down] = target.za.block;
+    assert!((1..=16384).contains(&across) && (1..=16384).contains(&down) && target.za.base % 16 == 0);
+    if target.hidden_surface == HiddenSurface::Za {
+        let blocks = u64::from(target.colour.width.div_ceil(across)) * u64::from(target.colour.height.div_ceil(down));
+        assert!(4 * (u64::from(target.za.base) + blocks) <= u64::from(mock.get(0x0014)));
+    }
+    assert!(target.tile.iter().all(|side| matches!(side, 4 | 8 | 16 | 32 | 64)));
     assert_ne!(mock.get(0x000C) & (1 << target.hidden_surface.code()), 0);
 }
 
@@ -106,12 +113,17 @@ fn inside(target: &Target, rectangle: &Rectangle) {
     assert!(rectangle.bottom <= target.colour.height);
 }
 
+/// Systolic array and tile unit compare depths in registers of their own; other paths need a Z buffer.
+fn may_have_depth(target: &Target) -> bool {
+    target.depth.is_some() || matches!(target.hidden_surface, HiddenSurface::Systolic | HiddenSurface::Tile)
+}
+
 /// A clear.
 pub fn clear(target: &Target, clear: &Clear) {
     inside(target, &clear.area);
     assert!(clear.colour.is_some() || clear.depth.is_some());
     if let Some(depth) = clear.depth {
-        assert!(target.depth.is_some());
+        assert!(may_have_depth(target));
         assert!(depth <= target.depth_format.maximum());
     }
 }
@@ -120,7 +132,7 @@ pub fn clear(target: &Target, clear: &Clear) {
 pub fn draw(mock: &Mock, target: &Target, state: &DrawState, draw: &Draw<'_>) {
     inside(target, &state.scissor);
     assert_eq!(state.effects.bits() & !mock.get(0x0008), 0);
-    assert!(target.depth.is_some() || !state.effects.contains(Effects::DEPTH));
+    assert!(may_have_depth(target) || !state.effects.contains(Effects::DEPTH));
     words(mock, &draw.vertices);
     let vertex_words = if draw.coloured { 4 } else { 3 };
     let given = match draw.vertices {

@@ -93,6 +93,7 @@ impl Mock {
         mock.set(0x0008, 0xFFF);
         mock.set(0x000C, 0xF);
         mock.set(0x0010, MEMORY);
+        mock.set(0x0014, 0x1_0000);
         mock
     }
 

@@ -244,7 +244,7 @@ proptest! {
 
     #[test]
     fn from_state_of_any_words_is_refused_or_gives_them_back(
-        head in (0..3_u32, 0..0x1100_u32, 0..0x1100_u32), target in prop::array::uniform9(number())
+        head in (0..3_u32, 0..0x1100_u32, 0..0x1100_u32), target in prop::array::uniform15(number())
     ) {
         let state = ProcessorState {
             in_scene: head.0,

@@ -1,11 +1,13 @@
 //! BEGIN_SCENE, END_SCENE, CLEAR.
 
-use crate::bench::Bench;
+use crate::bench::{Bench, TRIANGLE};
 use crate::mock::{Call, MEMORY};
-use zga_abi::format::{DepthFormat, HiddenSurface, PixelFormat};
+use zga_abi::format::{
+    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, TokenColour, TokenPorts, ZaPrediction,
+};
 use zga_abi::{Fault, FaultCode};
 use zga_firmware::Stopped;
-use zga_firmware::checked::{Clear, DepthSurface, Rectangle, Surface, Target};
+use zga_firmware::checked::{Clear, DepthSurface, Rectangle, Surface, SystolicSetting, Target, ZaSetting};
 
 const WHOLE: Rectangle = Rectangle { x: 0, y: 0, right: 64, bottom: 32 };
 
@@ -15,6 +17,12 @@ fn begin_scene_samples_the_target() {
     bench.card.set(0x0218, 0x0810);
     bench.card.set(0x0240, 2);
     bench.card.set(0x0244, 4);
+    bench.card.set(0x0248, 1);
+    bench.card.set(0x024C, 0x0003_0021);
+    bench.card.set(0x0250, 0x102);
+    bench.card.set(0x0254, 0x40);
+    bench.card.set(0x0258, 0b1011);
+    bench.card.set(0x025C, 0x0004_0040);
     let call = bench.last(0x02, &[]);
     let target = Target {
         colour: Surface { base: 0x1000, pitch: 256, width: 64, height: 32, format: PixelFormat::Xrgb8888 },
@@ -22,6 +30,15 @@ fn begin_scene_samples_the_target() {
         depth_format: DepthFormat::new(16, 8).expect("a format"),
         subpixel_bits: 4,
         hidden_surface: HiddenSurface::Systolic,
+        fidelity: Fidelity::Clocked,
+        za: ZaSetting { base: 16, block: [33, 3], prediction: ZaPrediction::Plane, bypass: false },
+        systolic: SystolicSetting {
+            end_test: EndTest::Zero,
+            ports: TokenPorts::Merged,
+            colour: TokenColour::Tag,
+            super_buffer: true,
+        },
+        tile: [64, 4],
     };
     assert_eq!(call, Call::BeginScene(target));
     assert_eq!(bench.processor.target(), Some(&target));
@@ -67,6 +84,14 @@ fn begin_scene_with_a_register_at_fault_names_its_offset() {
         (0x0218, 0x1820, BadValue, 0x0218),
         (0x0240, 4, BadValue, 0x0240),
         (0x0244, 6, BadValue, 0x0244),
+        (0x0248, 2, BadValue, 0x0248),
+        (0x024C, size(0, 1), BadValue, 0x024C),
+        (0x024C, size(1, 16385), BadValue, 0x024C),
+        (0x0250, 3, BadValue, 0x0250),
+        (0x0254, 0x20, BadAlignment, 0x0254),
+        (0x025C, size(7, 8), BadValue, 0x025C),
+        (0x025C, size(8, 2), BadValue, 0x025C),
+        (0x025C, size(128, 8), BadValue, 0x025C),
     ];
     for (register, value, code, at_fault) in cases {
         let mut bench = Bench::with_target();
@@ -100,6 +125,37 @@ fn begin_scene_on_a_path_the_card_lacks_is_unsupported() {
     bench.card.set(0x000C, 0b0001);
     bench.card.set(0x0240, 1);
     bench.bad(0x02, &[], FaultCode::Unsupported, 0, 0x0240);
+}
+
+#[test]
+fn begin_scene_on_the_za_path_needs_words_for_all_blocks() {
+    // 64 x 32 pixels in blocks of 16 x 2: 4 x 16 words, 256 bytes.
+    let mut bench = Bench::with_target();
+    bench.card.set(0x0014, 0x1000);
+    bench.card.set(0x0240, 1);
+    bench.card.set(0x024C, 0x0002_0010);
+    bench.card.set(0x0254, 0x0F00);
+    bench.good(0x02, &[]);
+    bench.good(0x03, &[]);
+    bench.card.set(0x0254, 0x0F40);
+    bench.bad(0x02, &[], FaultCode::OutOfMemory, 0, 0x0254);
+    // Only that path has a use for them.
+    bench.card.set(0x0240, 3);
+    bench.good(0x02, &[]);
+}
+
+#[test]
+fn depth_without_a_z_buffer_is_legal_on_paths_with_depth_registers() {
+    for (path, legal) in [(0, false), (1, false), (2, true), (3, true)] {
+        let mut bench = Bench::with_target();
+        bench.card.set(0x0014, 0x1000);
+        bench.card.set(0x0214, 0);
+        bench.card.set(0x0240, path);
+        bench.good(0x02, &[]);
+        let (cleared, _) = bench.run(&[0x0400_0003, 2, 0, 5]);
+        let (drawn, _) = bench.run(&[&[0x1000_000C, 0, 3, 0], &TRIANGLE[..]].concat());
+        assert_eq!((cleared.is_ok(), drawn.is_ok()), (legal, legal), "path {path}");
+    }
 }
 
 #[test]

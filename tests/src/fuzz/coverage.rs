@@ -12,7 +12,7 @@ use zga_firmware::Processor;
 const ONE_BATCH: u32 = 4000;
 
 /// Counts of one run or of many.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Coverage {
     /// Packets executed, in the order of [`Opcode::ALL`].
     pub opcodes: [u64; Opcode::ALL.len()],
@@ -28,6 +28,21 @@ pub struct Coverage {
     pub restores_refused: u64,
     /// A packet turned continuous scan-out on.
     pub clock: bool,
+}
+
+impl Default for Coverage {
+    /// Nothing counted. By hand, as the standard library knows defaults of short arrays only.
+    fn default() -> Self {
+        Coverage {
+            opcodes: [0; Opcode::ALL.len()],
+            topologies: [0; 4],
+            faults: [0; FaultCode::ALL.len()],
+            counters: [0; Counter::COUNT],
+            restores: 0,
+            restores_refused: 0,
+            clock: false,
+        }
+    }
 }
 
 impl Coverage {

@@ -8,6 +8,8 @@ use super::bins::{Bin, Bins};
 use super::tile::{TILE, Tile, TileCounts};
 use super::{DepthTest, kernel};
 use crate::geometry::plane::below;
+use crate::hidden::za::band::TileBlocks;
+use crate::pipeline::bands::{Plane, Sight, Surfaces};
 use crate::shading::plane::{ColourPlane, ColourSource, Interpolation};
 use crate::shading::resolve::{Planes, Row16, Row32, resolve_row};
 use fearless_simd::{Level, Simd, dispatch};
@@ -39,16 +41,18 @@ pub struct Setting {
 #[derive(Debug)]
 pub struct Scratch {
     /// Which primitive of the tile is seen at each pixel, counted from 1 through the shares' bins.
-    ids: Box<[u32; TILE * TILE]>,
+    pub(in crate::hidden) ids: Box<[u32; TILE * TILE]>,
     /// Place of each primitive's colour plane in `planes` plus 1; 0 is none yet.
     place: Vec<u32>,
     /// Colour planes of the primitives that are seen.
     planes: Vec<ColourPlane>,
+    /// Blocks of a tile, once a path that has them has drawn.
+    pub(in crate::hidden) blocks: Option<Box<TileBlocks>>,
 }
 
 impl Default for Scratch {
     fn default() -> Self {
-        Scratch { ids: Box::new([0; TILE * TILE]), place: Vec::new(), planes: Vec::new() }
+        Scratch { ids: Box::new([0; TILE * TILE]), place: Vec::new(), planes: Vec::new(), blocks: None }
     }
 }
 
@@ -60,10 +64,10 @@ impl Setting {
         level: Level,
         shares: &[Bins],
         band: usize,
-        colour: &mut [u32],
-        depth: &mut [i32],
+        surfaces: Surfaces<'_>,
         scratch: &mut Scratch,
     ) -> TileCounts {
+        let Surfaces { colour: Plane { rows: colour, .. }, depth: Plane { rows: depth, .. }, mut sight, .. } = surfaces;
         let top = (band * TILE) as i32;
         let rows = [top.max(self.scissor.y as i32), (top + TILE as i32).min(self.scissor.bottom as i32)];
         let mut total = TileCounts::default();
@@ -83,6 +87,7 @@ impl Setting {
                 depth: &mut *depth,
                 depth_pitch: self.depth_pitch,
                 ids: &mut scratch.ids,
+                tokens: &mut *sight.tokens.rows,
                 counts: TileCounts { touched: [i32::MAX, i32::MIN], ..TileCounts::default() },
             };
             let mut first = 1;
@@ -91,10 +96,35 @@ impl Setting {
                 first += bin.len() as u32;
             }
             let counts = tile.counts;
+            if sight.is_kept() {
+                self.note(&scratch.ids, x as usize, top, counts.touched, &mut sight);
+            }
             dispatch!(level, simd => self.resolve(simd, bins, x as usize, top, counts.touched, colour, scratch));
             total = total.plus(counts);
         }
         total
+    }
+
+    /// Notes which pixels of a tile something was drawn to, and whether its colour is interpolated.
+    fn note(&self, ids: &[u32; TILE * TILE], x: usize, top: i32, touched: [i32; 2], sight: &mut Sight<'_>) {
+        // Rows of whole chunks, as long as the target is wide.
+        let pitch = (self.width as usize).div_ceil(16);
+        let late = if self.interpolation == Interpolation::Flat { 0 } else { u16::MAX };
+        for row in touched[0]..touched[1] {
+            let row = (row - top) as usize;
+            let ids = ids[row * TILE..][..TILE].as_chunks::<16>().0;
+            let first = row * pitch + x / 16;
+            let beyond = (row + 1) * pitch;
+            let places = sight.winner.rows[first..beyond].iter_mut().zip(&mut sight.late.rows[first..beyond]);
+            for (ids, (winner, lates)) in ids.iter().zip(places) {
+                let mut seen = 0_u16;
+                for (lane, &id) in ids.iter().enumerate() {
+                    seen |= u16::from(id != 0) << lane;
+                }
+                *winner |= seen;
+                *lates = (*lates & !seen) | (seen & late);
+            }
+        }
     }
 
     /// Visibility of one share's primitives in one tile.
@@ -136,7 +166,7 @@ impl Setting {
     /// Colours of one tile; leaves the identifiers empty.
     #[expect(clippy::too_many_arguments, reason = "inlined into its one caller at every SIMD level")]
     #[inline(always)]
-    fn resolve<'b, S: Simd, B: Iterator<Item = &'b Bin>>(
+    pub(in crate::hidden) fn resolve<'b, S: Simd, B: Iterator<Item = &'b Bin>>(
         &self,
         simd: S,
         bins: impl Fn() -> B,
@@ -146,7 +176,7 @@ impl Setting {
         colour: &mut [u32],
         scratch: &mut Scratch,
     ) {
-        let Scratch { ids, place, planes } = scratch;
+        let Scratch { ids, place, planes, .. } = scratch;
         planes.clear();
         place.clear();
         place.resize(bins().map(Bin::len).sum(), 0);

@@ -31,14 +31,14 @@ pub const NO_DEPTH: u8 = 2;
 pub const WIDE: u8 = 3;
 
 /// Lane k's share of a value that grows from lane to lane: k steps in two halves.
-struct Steps<S: Simd> {
+pub(in crate::hidden) struct Steps<S: Simd> {
     high: i32x16<S>,
     low: u32x16<S>,
 }
 
 impl<S: Simd> Steps<S> {
     #[inline(always)]
-    fn new(simd: S, step: i64) -> Self {
+    pub(in crate::hidden) fn new(simd: S, step: i64) -> Self {
         let lane = u32x16::from_slice(simd, &LANE);
         // k * low as 64 bits from 16-bit pieces: k < 16 leaves room in 32.
         let (low, high) = (step as u32, (step >> 32) as u32);
@@ -65,7 +65,7 @@ impl<S: Simd> Steps<S> {
 }
 
 /// What of a triangle all rows share.
-struct Lanes<S: Simd> {
+pub(in crate::hidden) struct Lanes<S: Simd> {
     steps: Steps<S>,
     minimum: i32x16<S>,
     maximum: i32x16<S>,
@@ -80,7 +80,7 @@ struct Lanes<S: Simd> {
 
 impl<S: Simd> Lanes<S> {
     #[inline(always)]
-    fn new(simd: S, plane: &DepthPlane, id: u32, test: DepthTest) -> Self {
+    pub(in crate::hidden) fn new(simd: S, plane: &DepthPlane, id: u32, test: DepthTest) -> Self {
         Lanes {
             steps: Steps::new(simd, plane.dx),
             minimum: i32x16::splat(simd, plane.minimum),
@@ -97,15 +97,16 @@ impl<S: Simd> Lanes<S> {
 
     /// Depths of a chunk whose lane 0 has value `value`.
     #[inline(always)]
-    fn depths(&self, simd: S, value: i64) -> i32x16<S> {
+    pub(in crate::hidden) fn depths(&self, simd: S, value: i64) -> i32x16<S> {
         self.steps.upper(simd, value).max(self.minimum).min(self.maximum)
     }
 
-    /// Tests lanes `from..from + count` of a chunk (`from` modulo 2^32); returns how many passed.
+    /// Tests lanes `from..from + count` of a chunk (`from` modulo 2^32); returns a bit for each that passed,
+    /// none without a depth buffer.
     ///
     /// `SKIP` looks first whether any did: worth it where whole layers are hidden.
     #[inline(always)]
-    fn chunk<const MODE: u8, const SKIP: bool>(
+    pub(in crate::hidden) fn chunk<const MODE: u8, const SKIP: bool>(
         &self,
         simd: S,
         depth: &mut [i32],
@@ -117,7 +118,7 @@ impl<S: Simd> Lanes<S> {
         let inside = (self.lane - from).simd_lt(u32x16::splat(simd, count));
         if MODE == NO_DEPTH {
             inside.select(self.id, u32x16::from_slice(simd, ids)).store_slice(ids);
-            return count;
+            return 0;
         }
         let stored = i32x16::from_slice(simd, depth);
         let pass = if MODE == LESS {
@@ -134,15 +135,27 @@ impl<S: Simd> Lanes<S> {
             }
             pass.select(self.id, u32x16::from_slice(simd, ids)).store_slice(ids);
         }
-        bits.count_ones()
+        bits
     }
 }
 
 /// The three edges of a triangle, walked [`LANES`] rows at a time.
-struct Walks<S: Simd> {
+pub(in crate::hidden) struct Walks<S: Simd> {
     long: Steps<S>,
     upper: Steps<S>,
     lower: Steps<S>,
+}
+
+/// What a triangle covers on up to [`LANES`] rows of a tile, a lane each.
+pub(in crate::hidden) struct Spans<S: Simd> {
+    /// First column, counted from the tile's first.
+    pub(in crate::hidden) from: i32x16<S>,
+    /// Number of columns; means nothing where nothing is covered.
+    pub(in crate::hidden) width: i32x16<S>,
+    /// Rows that cover something.
+    pub(in crate::hidden) covered: mask32x16<S>,
+    /// Rows that begin in this tile and not in one left of it.
+    pub(in crate::hidden) begun: mask32x16<S>,
 }
 
 /// The pixels a triangle covers on up to [`LANES`] rows of a tile.
@@ -159,7 +172,7 @@ struct Rows {
 
 impl<S: Simd> Walks<S> {
     #[inline(always)]
-    fn new(simd: S, t: &Triangle) -> Self {
+    pub(in crate::hidden) fn new(simd: S, t: &Triangle) -> Self {
         Walks {
             long: Steps::new(simd, t.long.step),
             upper: Steps::new(simd, t.short[0].step),
@@ -169,7 +182,7 @@ impl<S: Simd> Walks<S> {
 
     /// Rows `y..y + count`.
     #[inline(always)]
-    fn rows(&self, simd: S, t: &Triangle, y: i32, count: i32, tile: &Tile<'_>) -> Rows {
+    pub(in crate::hidden) fn spans(&self, simd: S, t: &Triangle, y: i32, count: i32, tile: &Tile<'_>) -> Spans<S> {
         let lane = u32x16::from_slice(simd, &LANE);
         let in_upper = lane.simd_lt((t.rows[1] - y).clamp(0, LANES as i32) as u32);
         let long = self.long.columns(simd, t.long.walk(y - t.rows[0]), tile.x);
@@ -183,14 +196,21 @@ impl<S: Simd> Walks<S> {
         let covered = lane.simd_lt(count as u32) & width.simd_gt(0);
         // A span is counted by the tile in which it begins; one cut by the scissor begins there.
         let begun = covered & start.simd_ge(if tile.scissor_x >= tile.x { i32::MIN } else { 0 });
+        Spans { from, width, covered, begun }
+    }
+
+    /// Rows `y..y + count`.
+    #[inline(always)]
+    fn rows(&self, simd: S, t: &Triangle, y: i32, count: i32, tile: &Tile<'_>) -> Rows {
+        let spans = self.spans(simd, t, y, count, tile);
         let mut rows = Rows {
             from: [0; LANES],
             count: [0; LANES],
-            covered: covered.to_bitmask() as u32,
-            begun: begun.to_bitmask() as u32,
+            covered: spans.covered.to_bitmask() as u32,
+            begun: spans.begun.to_bitmask() as u32,
         };
-        from.store_slice(&mut rows.from);
-        width.store_slice(&mut rows.count);
+        spans.from.store_slice(&mut rows.from);
+        spans.width.store_slice(&mut rows.count);
         rows
     }
 }
@@ -223,6 +243,9 @@ pub fn triangle<S: Simd, const MODE: u8>(
         let rows = walks.rows(simd, t, y, beyond - y, tile);
         tile.counts.spans += u64::from(rows.begun.count_ones());
         let top = (y - tile.band_y) as usize;
+        if !tile.tokens.is_empty() {
+            count_tokens(&mut tile.tokens[top..], rows.begun);
+        }
         let value = t.plane.value(x, y);
         let mut left = rows.covered;
         while left != 0 {
@@ -244,14 +267,9 @@ pub fn triangle<S: Simd, const MODE: u8>(
                 let start = from.min(reach - LANES);
                 let z = lanes.depths(simd, value.wrapping_add((start as i64).wrapping_mul(lanes.dx)));
                 let depth = if MODE == NO_DEPTH { depth } else { &mut depth[start..start + LANES] };
-                lanes.chunk::<MODE, false>(
-                    simd,
-                    depth,
-                    &mut ids[start..start + LANES],
-                    z,
-                    (from - start) as u32,
-                    count as u32,
-                )
+                let ids = &mut ids[start..start + LANES];
+                let bits = lanes.chunk::<MODE, false>(simd, depth, ids, z, (from - start) as u32, count as u32);
+                if MODE == NO_DEPTH { count as u32 } else { bits.count_ones() }
             } else {
                 long_row::<S, MODE>(simd, &lanes, depth, ids, value, from, count)
             };
@@ -261,6 +279,13 @@ pub fn triangle<S: Simd, const MODE: u8>(
     tile.counts.rows_touched(first, beyond);
     tile.counts.covered += u64::from(covered);
     tile.counts.passed += u64::from(passed);
+}
+
+/// Adds 1 to the count of each row that `begun` has a bit for.
+fn count_tokens(tokens: &mut [u32], begun: u32) {
+    for (row, tokens) in tokens.iter_mut().take(LANES).enumerate() {
+        *tokens += (begun >> row) & 1;
+    }
 }
 
 /// `count` pixels of a row from column `from` on, chunk by chunk.
@@ -288,7 +313,7 @@ fn long_row<S: Simd, const MODE: u8>(
         return count as u32;
     }
     for (depth, ids) in depth[first..beyond].as_chunks_mut::<LANES>().0.iter_mut().zip(ids) {
-        passed += lanes.chunk::<MODE, true>(simd, depth, ids, z, lane, count as u32);
+        passed += lanes.chunk::<MODE, true>(simd, depth, ids, z, lane, count as u32).count_ones();
         lane = lane.wrapping_sub(LANES as u32);
         if lanes.dx != 0 {
             value = value.wrapping_add(lanes.dx.wrapping_mul(LANES as i64));

@@ -21,7 +21,7 @@ pub mod uniform;
 use crate::probe::account::{Account, Clocks};
 use zga_abi::Counter;
 use zga_abi::format::{DepthFunction, PixelFormat};
-use zga_firmware::checked::{Clear, Rectangle, Target};
+use zga_firmware::checked::{Clear, DepthSurface, Rectangle, Surface, Target};
 
 use crate::shading::plane::Interpolation;
 use band::Setting;
@@ -63,11 +63,21 @@ impl DepthTest {
 /// Frame buffer and Z buffer of a target as slices of video memory; the Z buffer is empty if there is none.
 #[must_use]
 pub fn surfaces<'m>(memory: &'m mut [u32], target: &Target) -> (&'m mut [u32], &'m mut [i32]) {
-    let colour = span(target.colour.base, target.colour.pitch, target.colour.height);
-    let Some(depth) = target.depth else {
+    surfaces_of(memory, &target.colour, target.depth.as_ref())
+}
+
+/// A frame buffer and the Z buffer that belongs to it as slices of video memory.
+#[must_use]
+pub fn surfaces_of<'m>(
+    memory: &'m mut [u32],
+    frame: &Surface,
+    depth: Option<&DepthSurface>,
+) -> (&'m mut [u32], &'m mut [i32]) {
+    let colour = span(frame.base, frame.pitch, frame.height);
+    let Some(depth) = depth else {
         return (&mut memory[colour[0]..colour[1]], &mut []);
     };
-    let depth = span(depth.base, depth.pitch, target.colour.height);
+    let depth = span(depth.base, depth.pitch, frame.height);
     // The firmware has checked that the two lie apart.
     if colour[0] < depth[0] {
         let (low, high) = memory.split_at_mut(depth[0]);
@@ -98,6 +108,30 @@ pub fn charge(counts: &TileCounts, setting: &Setting, account: &mut Account) {
     }
 }
 
+/// Writes a colour (RGBA, R in 7:0) to the pixels of `area` in a frame buffer.
+pub fn fill_colour(colours: &mut [u32], surface: &Surface, area: &Rectangle, colour: u32) {
+    let pixel = surface.format.encode(colour.to_le_bytes());
+    let columns = area.x as usize..area.right as usize;
+    let rows = colours.chunks_exact_mut(surface.pitch as usize / 4);
+    for row in rows.take(area.bottom as usize).skip(area.y as usize) {
+        match surface.format {
+            PixelFormat::Xrgb8888 | PixelFormat::Argb8888 => row[columns.clone()].fill(pixel),
+            PixelFormat::Rgb565 => bytemuck::cast_slice_mut::<u32, u16>(row)[columns.clone()].fill(pixel as u16),
+        }
+    }
+}
+
+/// Writes a depth to the pixels of `area` in rows of `pitch` depths; rows for which `held` says that they hold it
+/// already are left alone.
+pub fn fill_depth(depths: &mut [i32], pitch: usize, area: &Rectangle, depth: i32, held: impl Fn(usize) -> bool) {
+    let columns = area.x as usize..area.right as usize;
+    for (y, row) in depths.chunks_exact_mut(pitch).enumerate().take(area.bottom as usize).skip(area.y as usize) {
+        if !held(y) {
+            row[columns.clone()].fill(depth);
+        }
+    }
+}
+
 /// Clears planes of a target; rows of depths that `uniform` knows to hold the value already are left alone.
 pub fn clear(memory: &mut [u32], target: &Target, clear: &Clear, uniform: Option<&Uniform>, account: &mut Account) {
     let Rectangle { x, y, right, bottom } = clear.area;
@@ -107,25 +141,14 @@ pub fn clear(memory: &mut [u32], target: &Target, clear: &Clear, uniform: Option
     let (pixels, lines) =
         (u64::from(right - x) * u64::from(bottom - y), u64::from((right - x).div_ceil(16)) * u64::from(bottom - y));
     let (colours, depths) = surfaces(memory, target);
-    let (columns, rows) = (x as usize..right as usize, y as usize..bottom as usize);
     if let Some(colour) = clear.colour {
-        let pixel = target.colour.format.encode(colour.to_le_bytes());
-        for row in colours.chunks_exact_mut(target.colour.pitch as usize / 4).take(rows.end).skip(rows.start) {
-            match target.colour.format {
-                PixelFormat::Xrgb8888 | PixelFormat::Argb8888 => row[columns.clone()].fill(pixel),
-                PixelFormat::Rgb565 => bytemuck::cast_slice_mut::<u32, u16>(row)[columns.clone()].fill(pixel as u16),
-            }
-        }
+        fill_colour(colours, &target.colour, &clear.area, colour);
         account.add(Counter::ColourWrites, pixels);
         account.charge(Counter::CyclesZBuffer, Clocks(lines));
     }
     if let (Some(depth), Some(surface)) = (clear.depth, target.depth) {
-        let all = depths.chunks_exact_mut(surface.pitch as usize / 4).enumerate();
-        for (y, row) in all.take(rows.end).skip(rows.start) {
-            if !uniform.is_some_and(|uniform| uniform.holds(y)) {
-                row[columns.clone()].fill(depth as i32);
-            }
-        }
+        let held = |row: usize| uniform.is_some_and(|uniform| uniform.holds(row));
+        fill_depth(depths, surface.pitch as usize / 4, &clear.area, depth as i32, held);
         account.add(Counter::ZWrites, pixels);
         account.charge(Counter::CyclesZBuffer, Clocks(lines));
     }

@@ -11,6 +11,7 @@ use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::Shape;
 use crate::geometry::plane::below;
 use crate::geometry::triangle::doubled_area;
+use crate::pipeline::bands::Sight;
 use crate::shading::plane::{ColourPlane, ColourSource, Interpolation};
 use crate::shading::resolve::{PixelRow, Row16, Row32};
 use zga_abi::format::PixelFormat;
@@ -23,9 +24,21 @@ pub fn draw<'s>(
     colour: &mut [u32],
     depth: &mut [i32],
 ) -> TileCounts {
+    draw_noting(setting, shapes, colour, depth, &mut Sight::none())
+}
+
+/// Draws primitives as [`draw`] does, and notes what a path that shades late keeps.
+#[must_use]
+pub fn draw_noting<'s>(
+    setting: &Setting,
+    shapes: impl Iterator<Item = &'s Shape>,
+    colour: &mut [u32],
+    depth: &mut [i32],
+    sight: &mut Sight<'_>,
+) -> TileCounts {
     let mut counts = TileCounts::default();
     for shape in shapes {
-        primitive(setting, shape, colour, depth, &mut counts);
+        primitive(setting, shape, colour, depth, sight, &mut counts);
     }
     counts
 }
@@ -49,7 +62,14 @@ pub fn meets(shape: &Shape, x: i32, y: i32) -> bool {
     }
 }
 
-fn primitive(setting: &Setting, shape: &Shape, colour: &mut [u32], depth: &mut [i32], counts: &mut TileCounts) {
+fn primitive(
+    setting: &Setting,
+    shape: &Shape,
+    colour: &mut [u32],
+    depth: &mut [i32],
+    sight: &mut Sight<'_>,
+    counts: &mut TileCounts,
+) {
     let plane = shape.plane(setting.format);
     let colours = colour_plane(shape, setting.interpolation);
     let below = below(setting.format);
@@ -74,6 +94,7 @@ fn primitive(setting: &Setting, shape: &Shape, colour: &mut [u32], depth: &mut [
                 }
             }
             counts.passed += 1;
+            sight.note(setting, column, row);
             put(
                 setting,
                 &mut colour[row * setting.colour_pitch..][..setting.colour_pitch],
@@ -82,11 +103,15 @@ fn primitive(setting: &Setting, shape: &Shape, colour: &mut [u32], depth: &mut [
             );
         }
         counts.spans += u64::from(any && matches!(shape, Shape::Triangle(..)));
+        if let Some(tokens) = sight.tokens.rows.get_mut(y as usize) {
+            *tokens += u32::from(any);
+        }
     }
 }
 
 /// Rows and columns that a primitive can touch inside the scissor, with a pixel to spare.
-fn extent(shape: &Shape, setting: &Setting) -> ((i32, i32), (i32, i32)) {
+#[must_use]
+pub fn extent(shape: &Shape, setting: &Setting) -> ((i32, i32), (i32, i32)) {
     let vertices: &[ScreenVertex] = match shape {
         Shape::Triangle(_, v) => v,
         Shape::Line(_, v) => v,

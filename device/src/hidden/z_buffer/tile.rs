@@ -5,6 +5,7 @@ use super::kernel::{LESS, NO_DEPTH};
 use crate::geometry::line::Line;
 use crate::geometry::plane::Axis;
 use crate::geometry::triangle::WALK;
+use crate::pipeline::bands::Counts;
 
 /// Width and height of a tile in pixels.
 pub const TILE: usize = 64;
@@ -41,6 +42,12 @@ impl TileCounts {
     }
 }
 
+impl Counts for TileCounts {
+    fn plus(self, other: TileCounts) -> TileCounts {
+        TileCounts::plus(self, other)
+    }
+}
+
 /// A tile being drawn.
 pub struct Tile<'a> {
     /// First column, pixels.
@@ -61,6 +68,8 @@ pub struct Tile<'a> {
     pub reach: usize,
     /// Which primitive is seen at each pixel, rows of [`TILE`]; 0 is none.
     pub ids: &'a mut [u32; TILE * TILE],
+    /// Plane segments that begin on each row of the band, counted for the paths that ask; else empty.
+    pub tokens: &'a mut [u32],
     /// Events.
     pub counts: TileCounts,
 }
@@ -84,6 +93,24 @@ impl Tile<'_> {
         self.counts.passed += u64::from(pass);
     }
 
+    /// Counts the plane segments of a line that begin in the tile: one a row, where the first pixel inside the
+    /// scissor lies.
+    #[cold]
+    fn line_tokens(&mut self, line: &Line) {
+        let (along, across) = if line.axis == Axis::X { (self.columns, self.rows) } else { (self.rows, self.columns) };
+        for step in line.steps[0].max(along[0])..line.steps[1].min(along[1]) {
+            let at = line.minor_at(step);
+            let begins = line.axis == Axis::Y
+                || step == line.steps[0]
+                || step == self.scissor_x
+                || line.minor_at(step - 1) != at;
+            if begins && (across[0]..across[1]).contains(&at) {
+                let row = if line.axis == Axis::X { at } else { step };
+                self.tokens[(row - self.band_y) as usize] += 1;
+            }
+        }
+    }
+
     /// Tests a line's steps that fall into the tile.
     pub fn line<const MODE: u8>(&mut self, line: &Line, id: u32, test: DepthTest, below: u32) {
         let (along, across) = if line.axis == Axis::X { (self.columns, self.rows) } else { (self.rows, self.columns) };
@@ -93,6 +120,9 @@ impl Tile<'_> {
             return;
         }
         self.counts.rows_touched(self.rows[0], self.rows[1]);
+        if !self.tokens.is_empty() {
+            self.line_tokens(line);
+        }
         let mut minor = line.minor.wrapping_add(i64::from(first - line.steps[0]).wrapping_mul(line.slope));
         let plane = &line.plane;
         // Depth follows the major axis alone: the other gradient is 0.
@@ -116,6 +146,9 @@ impl Tile<'_> {
         let [x, y] = pixel;
         if (self.columns[0]..self.columns[1]).contains(&x) && (self.rows[0]..self.rows[1]).contains(&y) {
             self.counts.rows_touched(y, y + 1);
+            if let Some(tokens) = self.tokens.get_mut((y - self.band_y) as usize) {
+                *tokens += 1;
+            }
             self.fragment::<MODE>(x, y, z, id, test);
         }
     }

@@ -1,0 +1,176 @@
+//! The specification of the Za path: primitive by primitive, block by block, pixel by pixel.
+//!
+//! Simple and slow on purpose. What a primitive covers is found by its edge functions; the words are
+//! maxima taken anew from the Z buffer; nothing is stepped and nothing is remembered from one block to
+//! the next. Every faster or finer model must give the same frame buffer, Z buffer, words and counts.
+
+use super::memory::{maximum, put};
+use super::prediction::{Predictor, RowRun, clocks};
+use super::{Surfaces, ZaCounts, ZaDraw, grid};
+use crate::geometry::assembly::Shape;
+use crate::hidden::z_buffer::DepthTest;
+use crate::hidden::z_buffer::specification::{colour_plane, extent, meets};
+use crate::shading::plane::ColourPlane;
+use zga_firmware::checked::Rectangle;
+
+/// Draws primitives on whole surfaces, one after another.
+#[must_use]
+pub fn draw<'s>(draw: &ZaDraw, shapes: impl Iterator<Item = &'s Shape>, surfaces: &mut Surfaces<'_>) -> ZaCounts {
+    let mut counts = ZaCounts::default();
+    for shape in shapes {
+        primitive(draw, shape, surfaces, &mut counts);
+    }
+    counts
+}
+
+/// Draws one primitive.
+fn primitive(draw: &ZaDraw, shape: &Shape, surfaces: &mut Surfaces<'_>, counts: &mut ZaCounts) {
+    let primitive = Primitive {
+        colours: colour_plane(shape, draw.pixels.interpolation),
+        depths: Predictor::new(shape, draw.pixels.format),
+    };
+    let ((top, bottom), (left, right)) = extent(shape, &draw.pixels);
+    if top >= bottom || left >= right {
+        return;
+    }
+    let bounds = Rectangle { x: left as u32, y: top as u32, right: right as u32, bottom: bottom as u32 };
+    let [columns, rows] = draw.grid.meeting(&bounds);
+    let mut drawn_rows = vec![false; (bottom - top) as usize];
+    let mut run = Vec::new();
+    for row in rows {
+        for column in columns.clone() {
+            let area = draw.grid.area_at(column, row);
+            let part = grid::common(&area, &bounds);
+            run.clear();
+            for y in part.y as i32..part.bottom as i32 {
+                run.extend((part.x as i32..part.right as i32).filter(|&x| meets(shape, x, y)).map(|x| [x, y]));
+            }
+            if !run.is_empty() {
+                run.iter().for_each(|[_, y]| drawn_rows[(y - top) as usize] = true);
+                visit(draw, &primitive, &run, row * draw.grid.across() + column, &area, surfaces, counts);
+            }
+        }
+    }
+    if matches!(shape, Shape::Triangle(..)) {
+        counts.count_spans(drawn_rows.iter().map(|&drawn| u64::from(drawn)).sum());
+    }
+}
+
+/// A primitive's colours and depths.
+struct Primitive {
+    colours: ColourPlane,
+    depths: Predictor,
+}
+
+impl Primitive {
+    /// Depth of a covered pixel, as stored.
+    fn depth(&self, [x, y]: [i32; 2]) -> i32 {
+        self.depths.plane.stored(self.depths.plane.value(x, y), self.depths.below)
+    }
+}
+
+/// Visits one block for one primitive, which covers the pixels `run` of it (not none).
+fn visit(
+    draw: &ZaDraw,
+    primitive: &Primitive,
+    run: &[[i32; 2]],
+    index: usize,
+    area: &Rectangle,
+    surfaces: &mut Surfaces<'_>,
+    counts: &mut ZaCounts,
+) {
+    let (pixels, covered) = (grid::pixels(area), run.len() as u64);
+    if surfaces.words[index] < 0 {
+        fill_with_background(draw, area, surfaces);
+        let passed = match draw.test() {
+            None => paint(draw, primitive, run, surfaces),
+            Some(test) => compare(draw, primitive, test, run, surfaces),
+        };
+        surfaces.words[index] = word(draw, area, surfaces);
+        counts.count_initialised(pixels, passed, draw.depth_buffer);
+        return;
+    }
+    let Some(test) = draw.test() else {
+        paint(draw, primitive, run, surfaces);
+        counts.count_painted(covered);
+        return;
+    };
+    let mut spent = 0;
+    if draw.may_bypass() {
+        let rows = row_runs(run);
+        spent = clocks(draw.prediction, rows.len() as u64);
+        if primitive.depths.predict(draw.prediction, draw.grid.block, &rows) > surfaces.words[index] {
+            counts.count_bypassed(covered, spent);
+            return;
+        }
+    }
+    let passed = compare(draw, primitive, test, run, surfaces);
+    if test.write {
+        surfaces.words[index] = word(draw, area, surfaces);
+    }
+    counts.count_compared(test.write, pixels, covered, passed, spent);
+}
+
+/// What the block holds that nobody has drawn to.
+fn fill_with_background(draw: &ZaDraw, area: &Rectangle, surfaces: &mut Surfaces<'_>) {
+    for y in area.y as usize..area.bottom as usize {
+        for x in area.x as usize..area.right as usize {
+            put(surfaces.colour, draw.pixels.pixel_format, draw.pixels.colour_pitch, x, y, draw.background.pixel);
+            if draw.depth_buffer {
+                surfaces.depth[y * draw.pixels.depth_pitch + x] = draw.background.depth;
+            }
+        }
+    }
+}
+
+/// The pixels get the primitive's colours, whatever their depth; returns how many there are.
+fn paint(draw: &ZaDraw, primitive: &Primitive, run: &[[i32; 2]], surfaces: &mut Surfaces<'_>) -> u64 {
+    for &[x, y] in run {
+        let pixel = draw.pixels.pixel_format.encode(primitive.colours.colour(x, y).to_le_bytes());
+        put(surfaces.colour, draw.pixels.pixel_format, draw.pixels.colour_pitch, x as usize, y as usize, pixel);
+    }
+    run.len() as u64
+}
+
+/// The pixels that pass the depth test get the primitive's colours and depths; returns how many do.
+fn compare(
+    draw: &ZaDraw,
+    primitive: &Primitive,
+    test: DepthTest,
+    run: &[[i32; 2]],
+    surfaces: &mut Surfaces<'_>,
+) -> u64 {
+    let mut passed = 0;
+    for &[x, y] in run {
+        let z = primitive.depth([x, y]);
+        let stored = &mut surfaces.depth[y as usize * draw.pixels.depth_pitch + x as usize];
+        if test.passes(z, *stored) {
+            if test.write {
+                *stored = z;
+            }
+            passed += paint(draw, primitive, &[[x, y]], surfaces);
+        }
+    }
+    passed
+}
+
+/// The word of an initialised block.
+fn word(draw: &ZaDraw, area: &Rectangle, surfaces: &Surfaces<'_>) -> i32 {
+    if draw.depth_buffer {
+        maximum(surfaces.depth, draw.pixels.depth_pitch, area)
+    } else {
+        draw.pixels.format.maximum() as i32
+    }
+}
+
+/// The rows of a run: its pixels come row by row, and those of a row lie side by side.
+fn row_runs(run: &[[i32; 2]]) -> Vec<RowRun> {
+    let mut rows: Vec<RowRun> = Vec::new();
+    for &[x, y] in run {
+        match rows.last_mut() {
+            Some(row) if row.y == y => row.last = x,
+            _ => rows.push(RowRun { y, first: x, last: x }),
+        }
+    }
+    rows
+}

@@ -1,0 +1,537 @@
+//! The drawing pipeline: geometry, hidden surfaces, shading, for one draw after another.
+//!
+//! Duties: cuts a draw into batches, has each assembled and binned (in shares, one a host thread),
+//! drawn band by band, and its events charged. Inputs: checked draws and the geometry registers.
+//! Outputs: frame buffer and Z buffer in video memory, counters.
+//!
+//! Clocks: 4 a vertex, 8 / 6 / 1 a triangle / line / point, 4 a clip plane that cuts (see
+//! [`crate::geometry`]); the rest is charged by the hidden-surface path.
+
+pub mod bands;
+mod sorted;
+mod workers;
+mod za_path;
+
+use crate::geometry::GeometryRegisters;
+use crate::geometry::ScreenVertex;
+use crate::geometry::assembly::{Assembler, GeometryCounts, List};
+use crate::geometry::fetch::Fetch;
+use crate::geometry::transform::Transform;
+use crate::hidden::systolic::Waves;
+use crate::hidden::z_buffer::band::Setting;
+use crate::hidden::z_buffer::tile::TILE;
+use crate::hidden::z_buffer::uniform::Uniform;
+use crate::hidden::z_buffer::{self, DepthTest, specification, surfaces};
+use crate::hidden::za::{self, ZaDraw};
+use crate::memory::VideoMemory;
+use crate::memory::areas::whole;
+use crate::probe::account::{Account, Clocks};
+use crate::probe::pixel::PixelProbe;
+use crate::shading::plane::Interpolation;
+use bands::{Plane, Sight, Surfaces};
+use fearless_simd::Level;
+use rayon::prelude::*;
+use sorted::Sorted;
+use std::ops::Range;
+use workers::{SHARE, Workers};
+use zga_abi::format::{Fidelity, HiddenSurface, Topology};
+use zga_abi::{Counter, Effects};
+use zga_firmware::Stopped;
+use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Target};
+
+/// Most host threads.
+const MAX_THREADS: usize = 256;
+
+/// Which code draws the pixels. All give the same bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kernel {
+    /// The widest SIMD level of this host.
+    #[default]
+    Best,
+    /// The specification: pixel by pixel, one thread.
+    Specification,
+    /// 4 lanes, SSE2; on other hosts the least level there is.
+    Sse2,
+    /// 4 lanes, SSE4.2.
+    Sse42,
+    /// 8 lanes, AVX2.
+    Avx2,
+    /// 16 lanes, AVX-512.
+    Avx512,
+}
+
+impl Kernel {
+    /// The kernels that this host can run.
+    #[must_use]
+    pub fn available() -> Vec<Kernel> {
+        let all = [Kernel::Specification, Kernel::Sse2, Kernel::Sse42, Kernel::Avx2, Kernel::Avx512];
+        all.into_iter().filter(|k| *k == Kernel::Specification || k.level().is_some()).chain([Kernel::Best]).collect()
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn level(self) -> Option<Level> {
+        let best = Level::new();
+        match self {
+            Kernel::Best => Some(best),
+            Kernel::Specification => None,
+            Kernel::Sse2 => best.as_sse2().map(Level::Sse2),
+            Kernel::Sse42 => best.as_sse4_2().map(Level::Sse4_2),
+            Kernel::Avx2 => best.as_avx2().map(Level::Avx2),
+            Kernel::Avx512 => best.as_avx512().map(Level::Avx512),
+        }
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn level(self) -> Option<Level> {
+        (self == Kernel::Best).then(Level::new)
+    }
+}
+
+/// How the host runs the pipeline; the picture and the counts do not depend on it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PipelineOptions {
+    /// Host threads; 0 is one for each processor.
+    pub threads: usize,
+    /// Which code draws the pixels; one the host cannot run counts as [`Kernel::Best`].
+    pub kernel: Kernel,
+}
+
+/// Geometry, hidden surfaces and shading of a card.
+#[derive(Debug)]
+pub struct Pipeline {
+    level: Option<Level>,
+    threads: usize,
+    target: Option<Target>,
+    workers: Workers,
+    shared: Vec<Option<ScreenVertex>>,
+    list: List,
+    /// What the Z buffer is known to hold since its last clear.
+    uniform: Option<Uniform>,
+    /// The scene of a path that sorts before it draws.
+    sorted: Sorted,
+}
+
+impl Pipeline {
+    /// A pipeline without power: it owns no scratch memory and no threads until it draws.
+    #[must_use]
+    pub fn new(options: &PipelineOptions) -> Pipeline {
+        let processors = || std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = if options.threads == 0 { processors() } else { options.threads };
+        let level = match options.kernel {
+            Kernel::Specification => None,
+            kernel => kernel.level().or_else(|| Kernel::Best.level()),
+        };
+        Pipeline {
+            level,
+            threads: threads.clamp(1, MAX_THREADS),
+            target: None,
+            workers: Workers::default(),
+            shared: Vec::new(),
+            list: List::default(),
+            uniform: None,
+            sorted: Sorted::default(),
+        }
+    }
+
+    /// Begins a scene on `target`.
+    pub fn begin_scene(&mut self, memory: &mut VideoMemory, target: &Target, account: &mut Account) {
+        self.target = Some(*target);
+        // Another frame buffer could lie over the Z buffer that is remembered.
+        self.uniform = self.uniform.take().filter(|uniform| uniform.is_of(target));
+        if target.hidden_surface == HiddenSurface::Za {
+            let (mut parts, areas) = memory.parts();
+            areas.begin_scene(&mut parts, target, account);
+        } else if !memory.areas().all().is_empty() {
+            let (mut parts, areas) = memory.parts();
+            areas.release_target(&mut parts, target, account);
+        }
+        if target.hidden_surface != HiddenSurface::ZBuffer {
+            self.uniform = None;
+            self.sorted.begin();
+        }
+        self.remember(memory);
+    }
+
+    /// Goes on with a scene on `target` that a snapshot was taken in.
+    pub fn resume_scene(&mut self, target: &Target) {
+        self.target = Some(*target);
+        self.uniform = None;
+    }
+
+    /// Ends the scene; a path that holds it back draws it now. `stop` is asked with the clocks that takes.
+    ///
+    /// # Errors
+    /// [`Stopped`] as `stop` says; what was drawn until then stays.
+    pub fn end_scene(
+        &mut self,
+        memory: &mut VideoMemory,
+        account: &mut Account,
+        stop: &dyn Fn(Clocks) -> Option<Stopped>,
+    ) -> Result<(), Stopped> {
+        let Some(target) = self.target.take() else {
+            return Ok(());
+        };
+        match target.hidden_surface {
+            HiddenSurface::ZBuffer => {}
+            HiddenSurface::Za => memory.parts().1.end_scene(),
+            HiddenSurface::Systolic | HiddenSurface::Tile => {
+                self.sorted.end(memory.drawing(), &target, self.level, account, stop)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives scratch memory and threads back. Which blocks are logically cleared is no scratch: it stays.
+    pub fn power_off(&mut self) {
+        self.workers = Workers::default();
+        self.shared = Vec::new();
+        self.list = List::default();
+        self.uniform = None;
+        self.sorted.power_off();
+    }
+
+    /// Has the clocked systolic array's next scene recorded.
+    pub fn record(&mut self, waves: Waves) {
+        self.sorted.waves = Some(waves);
+    }
+
+    /// The waveform of the last scene recorded, given away.
+    pub fn take_recorded(&mut self) -> Option<Vec<u8>> {
+        self.sorted.recorded.take()
+    }
+
+    /// A scene is open whose state a snapshot does not hold.
+    #[must_use]
+    pub fn holds_scene(&self) -> bool {
+        self.target.is_some_and(|target| target.is_sorted()) && self.sorted.is_used()
+    }
+
+    /// Has the memory count the changes by others to what is remembered of it.
+    fn remember(&self, memory: &mut VideoMemory) {
+        let uniform = self.uniform.as_ref().map_or(0..0, Uniform::words);
+        let areas = memory.areas().remembered();
+        let both = match (uniform.is_empty(), areas.is_empty()) {
+            (true, _) => areas,
+            (_, true) => uniform,
+            _ => uniform.start.min(areas.start)..uniform.end.max(areas.end),
+        };
+        memory.remember(both);
+    }
+
+    /// Clears planes of the target.
+    pub fn clear(&mut self, memory: &mut VideoMemory, clear: &Clear, account: &mut Account) {
+        let Some(target) = self.target else {
+            return;
+        };
+        match target.hidden_surface {
+            HiddenSurface::ZBuffer => self.clear_z_buffer(memory, &target, clear, account),
+            HiddenSurface::Za => za_path::clear(memory, &target, clear, account),
+            HiddenSurface::Systolic | HiddenSurface::Tile => self.sorted.clear(memory.drawing(), &target, clear),
+        }
+        self.remember(memory);
+    }
+
+    fn clear_z_buffer(&mut self, memory: &mut VideoMemory, target: &Target, clear: &Clear, account: &mut Account) {
+        let foreign = memory.foreign();
+        let memory = memory.drawing();
+        let known = self.uniform.take();
+        match (clear.depth, target.depth) {
+            (None, _) | (_, None) => {
+                z_buffer::clear(memory, target, clear, None, account);
+                self.uniform = known;
+            }
+            (Some(value), Some(surface)) if clear.area == whole(&target.colour) && self.level.is_some() => {
+                let mut uniform = Uniform::before_clear(known, target, surface, value, foreign);
+                z_buffer::clear(memory, target, clear, Some(&uniform), account);
+                uniform.cleared(foreign);
+                self.uniform = Some(uniform);
+            }
+            _ => z_buffer::clear(memory, target, clear, None, account),
+        }
+    }
+
+    /// Depth of a pixel as the path has it; 0 without any.
+    pub fn depth_at(&mut self, memory: &VideoMemory, x: u32, y: u32) -> u32 {
+        let Some(target) = self.target.filter(|t| t.has_depth() && x < t.colour.width && y < t.colour.height) else {
+            return 0;
+        };
+        match target.hidden_surface {
+            HiddenSurface::Systolic | HiddenSurface::Tile => self.sorted.depth_at(memory.words(), &target, x, y) as u32,
+            HiddenSurface::ZBuffer | HiddenSurface::Za => {
+                let word = target.depth.map(|depth| (depth.base / 4 + y * (depth.pitch / 4) + x) as usize);
+                let stored = word.and_then(|word| memory.words().get(word)).copied().unwrap_or(0);
+                za_path::cleared_depth(memory, &target, x, y).unwrap_or(stored)
+            }
+        }
+    }
+
+    /// Draws. Between batches `stop` is asked with the clocks this draw has taken so far.
+    ///
+    /// # Errors
+    /// [`Stopped`] as `stop` says; what was drawn until then stays.
+    #[expect(clippy::too_many_arguments, reason = "the unit's inputs; a struct would only be taken apart again")]
+    pub fn draw(
+        &mut self,
+        memory: &mut VideoMemory,
+        geometry: &GeometryRegisters,
+        state: &DrawState,
+        draw: &Draw<'_>,
+        mut probe: Option<&mut PixelProbe>,
+        account: &mut Account,
+        stop: &dyn Fn(Clocks) -> Option<Stopped>,
+    ) -> Result<(), Stopped> {
+        let Some(target) = self.target else {
+            return Ok(());
+        };
+        let size = [target.colour.width, target.colour.height];
+        let transform = Transform::new(geometry, state.effects, size, target.depth_format, target.subpixel_bits);
+        let setting = setting(&target, state);
+        let begun = account.total();
+        let path = self.path(memory, &target, &setting, account);
+        let fetch = Fetch::new(memory.words(), draw, state.material_colour);
+        let primitives = draw.topology.primitives(fetch.elements() as u32);
+        if fetch.indexed() {
+            self.transform_shared(&fetch, &transform, account);
+        }
+        let fast = self.level.filter(|_| probe.is_none() && path.is_fast());
+        let mut first = 0;
+        while first < primitives {
+            let assembler = Assembler {
+                fetch: Fetch::new(memory.words(), draw, state.material_colour),
+                transform: &transform,
+                format: target.depth_format,
+                topology: draw.topology,
+                shared: draw.indices.is_some().then_some(&self.shared[..]),
+            };
+            let (before, counts);
+            (before, (first, counts)) = (
+                first,
+                match fast {
+                    Some(_) => {
+                        let sorts = if path.is_sorted() { self.sorted.sorts(&target) } else { None };
+                        self.workers.assemble(self.threads, &assembler, setting.scissor, size, first..primitives, sorts)
+                    }
+                    None => list(&mut self.list, &assembler, setting.scissor, first..primitives),
+                },
+            );
+            charge_geometry(&counts, draw, account);
+            match fast {
+                Some(level) => self.draw_bins(level, memory, &target, &setting, &path, account),
+                None => {
+                    if let Some(probe) = probe.as_deref_mut() {
+                        let stored = self.depth_at(memory, probe.x, probe.y) as i32;
+                        probe.follow(&setting, state.depth_function, state.tag, &self.list.shapes, stored);
+                    }
+                    self.draw_list(memory, &target, &setting, &path, account)?;
+                }
+            }
+            debug_assert!(first > before);
+            if let Some(stopped) = stop(Clocks(account.total().0 - begun.0)) {
+                return Err(stopped);
+            }
+        }
+        if let Some(probe) = probe {
+            probe.draw = probe.draw.wrapping_add(1);
+        }
+        Ok(())
+    }
+
+    /// What decides visibility in a draw.
+    fn path(&mut self, memory: &mut VideoMemory, target: &Target, setting: &Setting, account: &mut Account) -> Path {
+        match target.hidden_surface {
+            HiddenSurface::ZBuffer => Path::ZBuffer,
+            HiddenSurface::Za => za_path::draw(memory, target, setting, account).map_or(Path::ZBuffer, Path::Za),
+            HiddenSurface::Systolic | HiddenSurface::Tile => Path::Sorted { held: sorted::is_held(target) },
+        }
+    }
+
+    /// Transforms each vertex of an indexed draw once.
+    fn transform_shared(&mut self, fetch: &Fetch<'_>, transform: &Transform, account: &mut Account) {
+        let count = fetch.vertices();
+        let vertex = |v: usize| transform.inside(&fetch.vertex(v));
+        self.shared.clear();
+        match self.workers.pool_for(self.threads, count >= 2 * SHARE as usize) {
+            Some(pool) => pool.install(|| (0..count).into_par_iter().map(vertex).collect_into_vec(&mut self.shared)),
+            None => self.shared.extend((0..count).map(vertex)),
+        }
+        account.add(Counter::GeometryVertices, count as u64);
+        account.charge(Counter::CyclesGeometry, Clocks(4 * count as u64));
+    }
+
+    /// Draws what was assembled into bins.
+    fn draw_bins(
+        &mut self,
+        level: Level,
+        memory: &mut VideoMemory,
+        target: &Target,
+        setting: &Setting,
+        path: &Path,
+        account: &mut Account,
+    ) {
+        let Some([first, beyond]) = self.workers.rows() else {
+            return;
+        };
+        let (threads, bands) = (self.threads, first..beyond);
+        match path {
+            Path::ZBuffer => {
+                if let Some(uniform) = &mut self.uniform {
+                    uniform.drawn(bands.clone());
+                }
+                let planes = planes(memory.drawing(), target, setting, first);
+                let counts = self.workers.draw(threads, planes, bands, |shares, band, planes, scratch| {
+                    setting.draw_band(level, shares, band, planes, scratch)
+                });
+                z_buffer::charge(&counts, setting, account);
+            }
+            Path::Za(draw) => {
+                let (parts, areas) = memory.parts();
+                let area_words = areas.words();
+                let mut planes = planes(parts.video, target, setting, first);
+                let across = draw.grid.across();
+                planes.words =
+                    Plane::of_bands(&mut parts.za[area_words], across * TILE / draw.grid.block[1] as usize, first);
+                let counts = self.workers.draw(threads, planes, bands, |shares, band, planes, scratch| {
+                    let Surfaces { colour, depth, words, .. } = planes;
+                    draw.draw_band(level, shares, band, colour.rows, depth.rows, words.rows, scratch)
+                });
+                za::charge(&counts, draw, account);
+            }
+            Path::Sorted { .. } => {
+                let setting = Setting { depth_pitch: Sorted::depth_pitch(target), ..*setting };
+                let planes = self.sorted.planes(memory.drawing(), target, &setting, first);
+                let counts = self.workers.draw(threads, planes, bands, |shares, band, planes, scratch| {
+                    setting.draw_band(level, shares, band, planes, scratch)
+                });
+                self.sorted.add_spans(counts.spans);
+            }
+        }
+    }
+
+    /// Draws what was assembled into a list.
+    fn draw_list(
+        &mut self,
+        memory: &mut VideoMemory,
+        target: &Target,
+        setting: &Setting,
+        path: &Path,
+        account: &mut Account,
+    ) -> Result<(), Stopped> {
+        self.uniform = None;
+        let shapes = self.list.shapes.iter().map(|(shape, _)| shape);
+        match path {
+            Path::ZBuffer => {
+                let (colour, depth) = surfaces(memory.drawing(), target);
+                let counts = specification::draw(setting, shapes, colour, depth);
+                z_buffer::charge(&counts, setting, account);
+            }
+            Path::Za(draw) => {
+                let (parts, areas) = memory.parts();
+                let (colour, depth) = surfaces(parts.video, target);
+                let mut surfaces = za::Surfaces { colour, depth, words: &mut parts.za[areas.words()] };
+                let counts = match target.fidelity {
+                    Fidelity::Functional => za::specification::draw(draw, shapes, &mut surfaces),
+                    Fidelity::Clocked => za::clocked::draw(draw, shapes, &mut surfaces),
+                };
+                za::charge(&counts, draw, account);
+            }
+            Path::Sorted { held: true } => {
+                self.sorted.hold(target, setting, &self.list);
+                if self.sorted.full() {
+                    return Err(Stopped::SceneFull);
+                }
+            }
+            Path::Sorted { held: false } => {
+                let setting = Setting { depth_pitch: Sorted::depth_pitch(target), ..*setting };
+                self.sorted.note(target, setting.scissor, &self.list);
+                let Surfaces { colour, depth, mut sight, .. } =
+                    self.sorted.planes(memory.drawing(), target, &setting, 0);
+                let counts = specification::draw_noting(&setting, shapes, colour.rows, depth.rows, &mut sight);
+                self.sorted.add_spans(counts.spans);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What decides visibility in a draw.
+enum Path {
+    ZBuffer,
+    Za(ZaDraw),
+    /// `held` back until the scene ends.
+    Sorted {
+        held: bool,
+    },
+}
+
+impl Path {
+    /// Whether primitives are drawn from bins where the host can.
+    fn is_fast(&self) -> bool {
+        match self {
+            Path::ZBuffer => true,
+            Path::Za(draw) => draw.fast(),
+            Path::Sorted { held } => !held,
+        }
+    }
+
+    fn is_sorted(&self) -> bool {
+        matches!(self, Path::Sorted { .. })
+    }
+}
+
+/// The planes of a target from band `first` on.
+fn planes<'m>(memory: &'m mut [u32], target: &Target, setting: &Setting, first: usize) -> Surfaces<'m> {
+    let (colour, depth) = surfaces(memory, target);
+    let depth = if setting.test.is_some() { Plane::new(depth, setting.depth_pitch, first) } else { Plane::none() };
+    Surfaces {
+        colour: Plane::new(colour, setting.colour_pitch, first),
+        depth,
+        words: Plane::none(),
+        sight: Sight::none(),
+    }
+}
+
+/// What the pixels of a draw share.
+fn setting(target: &Target, state: &DrawState) -> Setting {
+    let effects = state.effects;
+    Setting {
+        test: effects.contains(Effects::DEPTH).then(|| DepthTest::new(state.depth_function, state.depth_write)),
+        format: target.depth_format,
+        interpolation: if !effects.contains(Effects::GOURAUD) {
+            Interpolation::Flat
+        } else if effects.contains(Effects::PERSPECTIVE) {
+            Interpolation::Perspective
+        } else {
+            Interpolation::Affine
+        },
+        scissor: state.scissor,
+        width: target.colour.width,
+        pixel_format: target.colour.format,
+        colour_pitch: target.colour.pitch as usize / 4,
+        depth_pitch: target.depth.map_or(0, |d| d.pitch as usize / 4),
+    }
+}
+
+/// Assembles primitives into a plain list.
+fn list(list: &mut List, assembler: &Assembler<'_>, scissor: Rectangle, range: Range<u32>) -> (u32, GeometryCounts) {
+    let mut counts = GeometryCounts::default();
+    list.reset(scissor);
+    let first = assembler.run(range, list, &mut counts);
+    (first, counts)
+}
+
+/// Charges the geometry unit's events of one batch.
+fn charge_geometry(counts: &GeometryCounts, draw: &Draw<'_>, account: &mut Account) {
+    let (vertices, set_up) = match draw.topology {
+        Topology::Triangles => (3, 8),
+        Topology::Lines => (2, 6),
+        Topology::LineStrip => (1, 6),
+        Topology::Points => (1, 1),
+    };
+    let vertices = if draw.indices.is_some() { 0 } else { counts.primitives * vertices };
+    account.add(Counter::GeometryVertices, vertices);
+    account.add(Counter::GeometryPrimitives, counts.primitives);
+    account.add(Counter::GeometryClipped, counts.clipped);
+    account.add(Counter::GeometryDiscarded, counts.discarded);
+    let clocks = 4 * vertices + set_up * counts.primitives + 4 * counts.cuts;
+    account.charge(Counter::CyclesGeometry, Clocks(clocks));
+}

@@ -1,0 +1,370 @@
+//! Sorted scenes: the systolic array and the tile unit, which decide visibility when a scene ends.
+//!
+//! Clocked, the scene is held back and the unit's model draws it at END_SCENE. Functional, the host
+//! draws at once, as the plain Z buffer does, and keeps what the unit's events follow from: which pixels
+//! were drawn to and which of them have interpolated colours, how many segments each line has, how far
+//! polygons reach in each row of tiles. Pixels, counters and clocks are the same.
+//!
+//! Neither unit has a Z buffer. Where the target gives one all the same, depths are loaded from it
+//! unless the scene begins with a clear, and stored to it when the scene ends. Where it gives none, the
+//! functional model compares in memory of its own, which stands for the units' depth registers.
+
+use super::bands::{Plane, Sight, Surfaces};
+use crate::geometry::assembly::{List, Shape, Sink};
+use crate::geometry::plane::below;
+use crate::hidden::held::{Background, Held, HeldDraw, Item};
+use crate::hidden::systolic::{self, SystolicCounts, Waves};
+use crate::hidden::tile::Grid;
+use crate::hidden::tile::closed_form::{PixelCounts, Sorts, pixels_of_tile};
+use crate::hidden::tile::{self, scene};
+use crate::hidden::z_buffer::band::Setting;
+use crate::hidden::z_buffer::specification::meets;
+use crate::hidden::z_buffer::{fill_colour, fill_depth, surfaces};
+use crate::probe::account::{Account, Clocks};
+use fearless_simd::Level;
+use zga_abi::format::{Fidelity, HiddenSurface};
+use zga_firmware::Stopped;
+use zga_firmware::checked::{Clear, Rectangle, Target};
+
+/// Pixels in one element of a bit plane.
+const CHUNK: usize = 16;
+
+/// The open scene of a path that sorts, and memory that is kept from scene to scene.
+#[derive(Debug, Default)]
+pub(super) struct Sorted {
+    /// Something was drawn or cleared.
+    used: bool,
+    /// Something was drawn: no clear is the background any more.
+    drawn: bool,
+    background: Background,
+    /// Depths where the target has no Z buffer; rows of `depth_pitch`.
+    depth: Vec<i32>,
+    winner: Vec<u16>,
+    late: Vec<u16>,
+    /// Plane segments on each line.
+    tokens: Vec<u32>,
+    /// The tile unit's sorts.
+    sorts: Option<Sorts>,
+    /// Runs of triangles on rows.
+    spans: u64,
+    /// The scene, where it is held back.
+    held: Held,
+    /// Depth at the probed pixel of a scene that is held back, after so many of its items.
+    probed: Option<([u32; 2], usize, i32)>,
+    /// What is to be recorded of the next scene that the clocked array draws.
+    pub(super) waves: Option<Waves>,
+    /// The last waveform recorded.
+    pub(super) recorded: Option<Vec<u8>>,
+}
+
+/// The rows that functional drawing needs, elements each.
+struct Pitches {
+    depth: usize,
+    bits: usize,
+}
+
+impl Pitches {
+    fn of(target: &Target) -> Pitches {
+        let chunks = (target.colour.width as usize).div_ceil(CHUNK);
+        let depth = target.depth.map_or(chunks * CHUNK, |depth| depth.pitch as usize / 4);
+        Pitches { depth, bits: chunks }
+    }
+}
+
+/// Whether the scene on `target` is held back until it ends.
+pub(super) fn is_held(target: &Target) -> bool {
+    target.fidelity == Fidelity::Clocked
+}
+
+impl Sorted {
+    /// Gives memory back, but for what an instrument is set to and what it has seen: it belongs to the host.
+    pub(super) fn power_off(&mut self) {
+        *self = Sorted { waves: self.waves.take(), recorded: self.recorded.take(), ..Sorted::default() };
+    }
+
+    /// A scene begins.
+    pub(super) fn begin(&mut self) {
+        self.used = false;
+        self.drawn = false;
+        self.spans = 0;
+        self.background = Background::default();
+        self.held.reset();
+        self.probed = None;
+    }
+
+    /// Makes room before the first command of a scene.
+    fn make_ready(&mut self, target: &Target) {
+        if std::mem::replace(&mut self.used, true) || is_held(target) {
+            return;
+        }
+        let (pitches, height) = (Pitches::of(target), target.colour.height as usize);
+        for bits in [&mut self.winner, &mut self.late] {
+            bits.clear();
+            bits.resize(pitches.bits * height, 0);
+        }
+        self.tokens.clear();
+        self.tokens.resize(height, 0);
+        if target.depth.is_none() {
+            // Filled by the clear that follows, as a rule: see `clear` and `before_draw`.
+            self.depth.resize(pitches.depth * height, 0);
+        }
+        self.sorts = (target.hidden_surface == HiddenSurface::Tile).then(|| Sorts::new(target));
+    }
+
+    /// Before the first draw: depths that nobody has given are the farthest.
+    fn before_draw(&mut self, target: &Target) {
+        self.make_ready(target);
+        let first = !std::mem::replace(&mut self.drawn, true);
+        if first && !is_held(target) && target.depth.is_none() && self.background.depth.is_none() {
+            self.depth.fill(target.depth_format.maximum() as i32);
+        }
+    }
+
+    /// A clear. One of all pixels before anything is drawn is the scene's background; any other is drawn
+    /// like a rectangle that passes always.
+    pub(super) fn clear(&mut self, memory: &mut [u32], target: &Target, clear: &Clear) {
+        let area = clear.area;
+        if area.x >= area.right || area.y >= area.bottom {
+            return;
+        }
+        self.make_ready(target);
+        let whole = area == crate::memory::areas::whole(&target.colour);
+        let depth = clear.depth.map(|depth| depth as i32);
+        if is_held(target) {
+            self.held.clear(whole, area, clear.colour, depth);
+            return;
+        }
+        if whole && !self.drawn {
+            self.background.colour = clear.colour.or(self.background.colour);
+            self.background.depth = depth.or(self.background.depth);
+        } else {
+            self.before_draw(target);
+            self.draw_rectangle(target, &area, clear.colour.is_some());
+        }
+        let pitches = Pitches::of(target);
+        let (colours, depths) = surfaces(memory, target);
+        if let Some(colour) = clear.colour {
+            fill_colour(colours, &target.colour, &area, colour);
+        }
+        if let Some(depth) = depth {
+            let depths = if target.depth.is_some() { depths } else { &mut self.depth[..] };
+            fill_depth(depths, pitches.depth, &area, depth, |_| false);
+        }
+    }
+
+    /// Notes a rectangle that passes always.
+    fn draw_rectangle(&mut self, target: &Target, area: &Rectangle, coloured: bool) {
+        for tokens in &mut self.tokens[area.y as usize..area.bottom as usize] {
+            *tokens += 1;
+        }
+        if let Some(sorts) = &mut self.sorts {
+            sorts.clear(*area);
+        }
+        if coloured {
+            let pitch = Pitches::of(target).bits;
+            for y in area.y as usize..area.bottom as usize {
+                let row = y * pitch..(y + 1) * pitch;
+                for (chunk, (winner, late)) in self.winner[row.clone()].iter_mut().zip(&mut self.late[row]).enumerate()
+                {
+                    let mask = chunk_mask(chunk, area);
+                    *winner |= mask;
+                    *late &= !mask;
+                }
+            }
+        }
+    }
+
+    /// The rows of depths that a draw works on: elements from a row to the next.
+    pub(super) fn depth_pitch(target: &Target) -> usize {
+        Pitches::of(target).depth
+    }
+
+    /// Surfaces for a functional draw, from band `first` on.
+    pub(super) fn planes<'m>(
+        &'m mut self,
+        memory: &'m mut [u32],
+        target: &Target,
+        setting: &Setting,
+        first: usize,
+    ) -> Surfaces<'m> {
+        let pitches = Pitches::of(target);
+        let (colours, depths) = surfaces(memory, target);
+        let depths = if target.depth.is_some() { depths } else { &mut self.depth[..] };
+        Surfaces {
+            colour: Plane::new(colours, setting.colour_pitch, first),
+            depth: if setting.test.is_some() { Plane::new(depths, pitches.depth, first) } else { Plane::none() },
+            words: Plane::none(),
+            sight: Sight {
+                winner: Plane::new(&mut self.winner, pitches.bits, first),
+                late: Plane::new(&mut self.late, pitches.bits, first),
+                tokens: Plane::new(&mut self.tokens, 1, first),
+            },
+        }
+    }
+
+    /// Where primitives of a functional draw are noted for the tile unit.
+    pub(super) fn sorts(&mut self, target: &Target) -> Option<&mut Sorts> {
+        self.before_draw(target);
+        self.sorts.as_mut()
+    }
+
+    /// Notes the primitives of a list, where none were noted when they were assembled.
+    pub(super) fn note(&mut self, target: &Target, scissor: Rectangle, list: &List) {
+        if let Some(sorts) = self.sorts(target) {
+            sorts.scissor(scissor);
+            for (shape, number) in &list.shapes {
+                match shape {
+                    // The columns are the bins' business.
+                    Shape::Triangle(triangle, vertices) => sorts.triangle(triangle, [0, 0], vertices, *number),
+                    Shape::Line(line, vertices) => sorts.line(line, vertices, *number),
+                    Shape::Point(point, vertex) => sorts.point(point, vertex, *number),
+                }
+            }
+        }
+    }
+
+    /// Adds spans of a functional draw.
+    pub(super) fn add_spans(&mut self, spans: u64) {
+        self.spans += spans;
+    }
+
+    /// Holds primitives back.
+    pub(super) fn hold(&mut self, target: &Target, setting: &Setting, list: &List) {
+        self.before_draw(target);
+        let draw = HeldDraw { test: setting.test, interpolation: setting.interpolation, scissor: setting.scissor };
+        self.held.add(draw, list);
+    }
+
+    /// No more primitives can be held back.
+    pub(super) fn full(&self) -> bool {
+        self.held.full()
+    }
+
+    /// Depth at pixel (`x`, `y`) as it stands.
+    pub(super) fn depth_at(&mut self, memory: &[u32], target: &Target, x: u32, y: u32) -> i32 {
+        let pitch = Pitches::of(target).depth;
+        let at = y as usize * pitch + x as usize;
+        let surface = target.depth.map(|depth| memory.get(depth.base as usize / 4 + at).copied().unwrap_or(0) as i32);
+        let maximum = target.depth_format.maximum() as i32;
+        if !is_held(target) {
+            let own = if self.drawn || self.background.depth.is_some() { self.depth.get(at).copied() } else { None };
+            return surface.or(own).unwrap_or(maximum);
+        }
+        let (pixel, mut done, mut depth) = self.probed.unwrap_or(([x, y], 0, 0));
+        if done == 0 || pixel != [x, y] {
+            (done, depth) = (0, self.held.background.depth.or(surface).unwrap_or(maximum));
+        }
+        for item in &self.held.items[done..] {
+            depth = after(item, &self.held.draws, target, [x as i32, y as i32], depth);
+        }
+        self.probed = Some(([x, y], self.held.items.len(), depth));
+        depth
+    }
+
+    /// The scene has begun in earnest.
+    pub(super) fn is_used(&self) -> bool {
+        self.used
+    }
+
+    /// The scene ends: a scene that was held back is drawn, and its events are charged.
+    ///
+    /// # Errors
+    /// [`Stopped`] as `stop` says; what was drawn until then stays.
+    pub(super) fn end(
+        &mut self,
+        memory: &mut [u32],
+        target: &Target,
+        level: Option<Level>,
+        account: &mut Account,
+        stop: &dyn Fn(Clocks) -> Option<Stopped>,
+    ) -> Result<(), Stopped> {
+        if !self.used {
+            return Ok(());
+        }
+        let (colours, depths) = surfaces(memory, target);
+        match (target.hidden_surface, is_held(target)) {
+            (HiddenSurface::Systolic, true) => {
+                let mut waves = self.waves.take();
+                let (counts, stopped) =
+                    systolic::draw_until(&self.held, target, colours, depths, level, waves.as_mut(), stop);
+                self.recorded = waves.map(Waves::finish).or(self.recorded.take());
+                systolic::charge(&counts, account);
+                return stopped.map_or(Ok(()), Err);
+            }
+            (HiddenSurface::Systolic, false) => systolic::charge(&self.systolic_counts(target), account),
+            (_, true) => {
+                let (counts, stopped) = scene::draw_until(&self.held, target, colours, depths, stop);
+                tile::charge(&counts, account);
+                return stopped.map_or(Ok(()), Err);
+            }
+            (_, false) => {
+                let (grid, pitch) = (Grid::new(target), Pitches::of(target).bits);
+                let pixels = PixelCounts { spans: self.spans, shaded: ones(&self.late) };
+                let won = |column, row| pixels_of_tile(&self.winner, pitch, &grid.pixels(column, row));
+                if let Some(sorts) = &self.sorts {
+                    tile::charge(&sorts.finish(target, &self.background, pixels, won), account);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The systolic array's events, from what was noted.
+    fn systolic_counts(&self, target: &Target) -> SystolicCounts {
+        let width = target.colour.width;
+        let pixels = u64::from(width) * u64::from(target.colour.height);
+        let (depth, background) = (target.depth.is_some(), &self.background);
+        SystolicCounts {
+            tokens: self.tokens.iter().map(|&tokens| u64::from(tokens)).sum(),
+            clocks: systolic::closed_form(&self.tokens, width, &target.systolic),
+            spans: self.spans,
+            reads: if depth && background.depth.is_none() { pixels } else { 0 },
+            writes: if depth { pixels } else { 0 },
+            colours: if background.colour.is_some() { pixels } else { ones(&self.winner) },
+            shaded: ones(&self.late),
+        }
+    }
+}
+
+/// Bits that are set in a plane.
+fn ones(bits: &[u16]) -> u64 {
+    bits.iter().map(|chunk| u64::from(chunk.count_ones())).sum()
+}
+
+/// The bits of chunk `chunk` of a row that lie in the columns of `area`.
+fn chunk_mask(chunk: usize, area: &Rectangle) -> u16 {
+    let first = (chunk * CHUNK) as u32;
+    let below = |column: u32| ((1_u32 << column.saturating_sub(first).min(CHUNK as u32)) - 1) as u16;
+    below(area.right) & !below(area.x)
+}
+
+/// Depth of pixel (`x`, `y`) after an item, `depth` before it.
+fn after(item: &Item, draws: &[HeldDraw], target: &Target, [x, y]: [i32; 2], depth: i32) -> i32 {
+    let inside = |area: &Rectangle| {
+        (area.x as i32..area.right as i32).contains(&x) && (area.y as i32..area.bottom as i32).contains(&y)
+    };
+    match item {
+        Item::Clear { area, depth: Some(cleared), .. } if inside(area) => *cleared,
+        Item::Clear { .. } => depth,
+        Item::Primitive(shape, draw) => {
+            let draw = &draws[*draw as usize];
+            let Some(test) = draw.test.filter(|test| test.write && inside(&draw.scissor) && meets(shape, x, y)) else {
+                return depth;
+            };
+            let plane = shape.plane(target.depth_format);
+            let z = plane.stored(plane.value(x, y), below(target.depth_format));
+            if test.passes(z, depth) { z } else { depth }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chunk_mask_columns_of_the_area_only() {
+        let area = Rectangle { x: 18, y: 0, right: 33, bottom: 1 };
+        assert_eq!([0, 1, 2, 3].map(|chunk| chunk_mask(chunk, &area)), [0, 0xFFFC, 1, 0]);
+    }
+}

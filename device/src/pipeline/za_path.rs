@@ -1,0 +1,62 @@
+//! The Za path's way through the pipeline: clears and draws of the scene's frame.
+
+use crate::hidden::z_buffer::band::Setting;
+use crate::hidden::za::{self, Background, ZaDraw};
+use crate::memory::VideoMemory;
+use crate::memory::areas::whole;
+use crate::probe::account::Account;
+use zga_abi::Counter;
+use zga_firmware::checked::{Clear, Target};
+
+/// A draw to the scene's frame, whose words are exact now.
+pub(super) fn draw(
+    memory: &mut VideoMemory,
+    target: &Target,
+    pixels: &Setting,
+    account: &mut Account,
+) -> Option<ZaDraw> {
+    let (mut parts, areas) = memory.parts();
+    let area = areas.ready(&mut parts, account)?;
+    Some(ZaDraw {
+        pixels: *pixels,
+        grid: area.grid(),
+        background: area.background,
+        prediction: target.za.prediction,
+        bypass: target.za.bypass,
+        depth_buffer: target.depth.is_some(),
+    })
+}
+
+/// A clear: of all planes of all pixels in Za words alone, of anything else in memory.
+pub(super) fn clear(memory: &mut VideoMemory, target: &Target, clear: &Clear, account: &mut Account) {
+    let area = clear.area;
+    if area.x >= area.right || area.y >= area.bottom {
+        return;
+    }
+    let (mut parts, areas) = memory.parts();
+    let all = clear.colour.is_some() && (clear.depth.is_some() || target.depth.is_none());
+    let pixel = |colour: u32| target.colour.format.encode(colour.to_le_bytes());
+    if let (true, true, Some(colour)) = (area == whole(&target.colour), all, clear.colour) {
+        let depth = clear.depth.unwrap_or(target.depth_format.maximum()) as i32;
+        let Some(area) = areas.clear_all(&parts, Background { pixel: pixel(colour), depth }) else {
+            return;
+        };
+        za::memory::clear_logically(&mut parts.za[area.words()]).charge(account);
+        account.add(Counter::ZaClears, 1);
+        return;
+    }
+    let Some(mine) = areas.ready(&mut parts, account) else {
+        return;
+    };
+    let cleared = mine.clear_rectangle(&mut parts, &area, clear.colour.map(pixel), clear.depth.map(|d| d as i32));
+    cleared.charge(account);
+}
+
+/// Depth of pixel (`x`, `y`) if its block in the scene's frame is logically cleared.
+pub(super) fn cleared_depth(memory: &VideoMemory, target: &Target, x: u32, y: u32) -> Option<u32> {
+    let area = memory.areas().open_area().filter(|area| area.is_of(target))?;
+    let grid = area.grid();
+    let block = (y / grid.block[1]) as usize * grid.across() + (x / grid.block[0]) as usize;
+    let word = memory.za().words().get(area.words())?.get(block).copied()?;
+    (word < 0).then_some(area.background.depth as u32)
+}
