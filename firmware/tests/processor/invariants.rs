@@ -97,7 +97,7 @@ pub fn target(mock: &Mock, target: &Target) {
     }
     assert!(matches!(target.subpixel_bits, 4 | 8));
     let [across, down] = target.za.block;
-    assert!((1..=16384).contains(&across) && (1..=16384).contains(&down) && target.za.base % 16 == 0);
+    assert!((1..=16384).contains(&across) && (1..=16384).contains(&down) && target.za.base.is_multiple_of(16));
     if target.hidden_surface == HiddenSurface::Za {
         let blocks = u64::from(target.colour.width.div_ceil(across)) * u64::from(target.colour.height.div_ceil(down));
         assert!(4 * (u64::from(target.za.base) + blocks) <= u64::from(mock.get(0x0014)));

@@ -110,6 +110,13 @@ impl Coverage {
         }
     }
 
+    /// Counters of the card that never moved.
+    #[must_use]
+    pub fn silent(&self) -> Vec<&'static str> {
+        let silent = Counter::ALL.iter().zip(self.counters).filter(|(_, count)| *count == 0);
+        silent.map(|(counter, _)| counter.name()).collect()
+    }
+
     /// Packet kinds that were never executed.
     #[must_use]
     pub fn missing(&self) -> Vec<&'static str> {

@@ -19,6 +19,9 @@ use crate::hidden::z_buffer::tile::TILE;
 use fearless_simd::i32x16;
 use fearless_simd::prelude::*;
 
+/// Numbers of the lanes.
+pub const LANE: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+
 /// Blocks of a tile.
 #[derive(Debug)]
 pub struct Blocks {
@@ -31,8 +34,8 @@ pub struct Blocks {
     /// Rows on which blocks begin.
     firsts: u64,
     /// Words, or upper bounds of stale ones: [`TILE`] for each column, a block's at its first row; `i32::MIN`
-    /// elsewhere.
-    pub words: Box<[i32; TILE * TILE]>,
+    /// elsewhere. Any 16 from a row on can be loaded.
+    pub words: Box<[i32; TILE * TILE + LANES]>,
     /// Blocks that are logically cleared.
     pub cleared: [u64; TILE],
     /// Number of cleared blocks.
@@ -61,7 +64,7 @@ impl Default for Blocks {
             columns: 0,
             size: [0; 2],
             firsts: 0,
-            words: Box::new([i32::MIN; TILE * TILE]),
+            words: Box::new([i32::MIN; TILE * TILE + LANES]),
             cleared: [0; TILE],
             cleared_count: 0,
             stale: [0; TILE],
@@ -185,25 +188,25 @@ impl Blocks {
         width as u64 * u64::from(rows.count_ones())
     }
 
-    /// Pixels that passed on row `row`, some of which held the maximum of their block: where no other does, the
-    /// word is stale.
+    /// On `rows` of a column of blocks pixels that held the maximum do not any more: where no other of the block
+    /// does, its word is stale.
     #[inline(always)]
-    pub fn outdate(&mut self, row: usize, passed: u64) {
-        let mut lost = passed & self.holders[row];
-        self.holders[row] &= !passed;
-        let first = self.first_row(row);
-        while lost != 0 {
-            let column = (lost.trailing_zeros() >> self.shift[0]) as usize % TILE;
-            let pixels = self.column(column);
-            lost &= !pixels;
-            let mut held = self.holders[row];
+    pub fn outdate(&mut self, column: usize, rows: u64) {
+        let pixels = self.column(column);
+        let mut blocks = self.meeting(rows);
+        let mut stale = 0;
+        while blocks != 0 {
+            let first = blocks.trailing_zeros() as usize % TILE;
+            blocks &= blocks - 1;
+            let mut held = self.holders[first];
             if self.shift[1] != 0 {
                 for row in &self.holders[first..first + self.height()] {
                     held |= row;
                 }
             }
-            self.stale[column] |= u64::from(held & pixels == 0) << first;
+            stale |= u64::from(held & pixels == 0) << first;
         }
+        self.stale[column] |= stale;
     }
 
     /// All pixels of `rows` of a column of blocks hold their maxima.
@@ -228,55 +231,68 @@ impl Blocks {
         self.loose = false;
     }
 
-    /// Makes a stale word exact: the greatest depth of the block of column `column` that begins on row `first`,
-    /// at least 0. `depth` begins with the tile's first.
+    /// Columns of pixels of a column of blocks on the screen: first, first beyond.
     #[inline(always)]
-    pub fn renew<S: Simd>(&mut self, simd: S, column: usize, first: usize, depth: &[i32], pitch: usize) -> i32 {
+    fn sides(&self, column: usize) -> [usize; 2] {
         let left = column << self.shift[0];
-        let right = (left + (1 << self.shift[0])).min(self.size[0]);
-        let beyond = (first + self.height()).min(self.size[1]);
-        let lane = i32x16::from_slice(simd, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]);
-        let whole = left.is_multiple_of(LANES) && right.is_multiple_of(LANES);
-        let mut greatest = i32x16::splat(simd, 0);
-        for row in first..beyond {
-            let mut x = left & !(LANES - 1);
-            while x < right {
-                let chunk = i32x16::from_slice(simd, &depth[row * pitch + x..][..LANES]);
-                if whole {
-                    greatest = greatest.max(chunk);
-                } else {
-                    let inside = lane.simd_ge(left as i32 - x as i32) & lane.simd_lt(right as i32 - x as i32);
-                    greatest = inside.select(chunk, greatest).max(greatest);
-                }
-                x += LANES;
-            }
-        }
-        let greatest = greatest.reduce_max();
-        for row in first..beyond {
-            let mut x = left & !(LANES - 1);
-            let mut held = 0;
-            while x < right {
-                let chunk = i32x16::from_slice(simd, &depth[row * pitch + x..][..LANES]);
-                held |= chunk.simd_eq(greatest).to_bitmask() << x;
-                x += LANES;
-            }
-            self.holders[row] |= held & ones(right as u32) & !ones(left as u32);
-        }
-        self.words[column * TILE + first] = greatest;
-        self.stale[column] &= !(1 << first);
-        self.loose = true;
-        greatest
+        [left, (left + (1 << self.shift[0])).min(self.size[0])]
     }
 
-    /// Makes all stale words exact.
+    /// The greatest depth, at least 0, of the block of column `column` that begins on row `first`. `depth` begins
+    /// with the tile's first.
+    #[inline(always)]
+    fn greatest<S: Simd>(&self, simd: S, column: usize, first: usize, depth: &[i32], pitch: usize) -> i32 {
+        let [left, right] = self.sides(column);
+        let beyond = (first + self.height()).min(self.size[1]);
+        let mut greatest = i32x16::splat(simd, 0);
+        let start = left & !(LANES - 1);
+        for row in first..beyond {
+            let row = &depth[row * pitch + start..row * pitch + right.next_multiple_of(LANES)];
+            if left.is_multiple_of(LANES) && right.is_multiple_of(LANES) {
+                for chunk in row.as_chunks::<LANES>().0 {
+                    greatest = greatest.max(i32x16::from_slice(simd, chunk));
+                }
+                continue;
+            }
+            let lane = i32x16::from_slice(simd, &LANE);
+            for (chunk, x) in row.as_chunks::<LANES>().0.iter().zip((start..).step_by(LANES)) {
+                let inside = lane.simd_ge(left as i32 - x as i32) & lane.simd_lt(right as i32 - x as i32);
+                greatest = inside.select(i32x16::from_slice(simd, chunk), greatest).max(greatest);
+            }
+        }
+        greatest.reduce_max()
+    }
+
+    /// Makes a stale word exact and finds who holds the maximum. `depth` begins with the tile's first.
+    #[inline(always)]
+    pub fn renew<S: Simd>(&mut self, simd: S, column: usize, first: usize, depth: &[i32], pitch: usize) -> i32 {
+        let word = self.greatest(simd, column, first, depth, pitch);
+        let [left, right] = self.sides(column);
+        let beyond = (first + self.height()).min(self.size[1]);
+        let start = left & !(LANES - 1);
+        for (row, holders) in self.holders.iter_mut().enumerate().take(beyond).skip(first) {
+            let row = &depth[row * pitch + start..row * pitch + right.next_multiple_of(LANES)];
+            let mut held = 0;
+            for (chunk, x) in row.as_chunks::<LANES>().0.iter().zip((start..).step_by(LANES)) {
+                held |= i32x16::from_slice(simd, chunk).simd_eq(word).to_bitmask() << x;
+            }
+            *holders |= held & ones(right as u32) & !ones(left as u32);
+        }
+        self.words[column * TILE + first] = word;
+        self.stale[column] &= !(1 << first);
+        self.loose = true;
+        word
+    }
+
+    /// Makes all stale words exact, as the tile is left.
     #[inline(always)]
     pub fn renew_all<S: Simd>(&mut self, simd: S, depth: &[i32], pitch: usize) {
         for column in 0..self.columns {
             let mut stale = self.stale[column];
             while stale != 0 {
-                let first = stale.trailing_zeros() as usize;
+                let first = stale.trailing_zeros() as usize % TILE;
                 stale &= stale - 1;
-                self.renew(simd, column, first, depth, pitch);
+                self.words[column * TILE + first] = self.greatest(simd, column, first, depth, pitch);
             }
         }
     }

@@ -13,7 +13,7 @@
 //! Counts and clocks are the same sums as one visit after another would give; see
 //! [`super::specification`].
 
-use super::blocks::ones;
+use super::blocks::{LANE, ones};
 use super::prediction::clocks;
 use super::tile::ZaTile;
 use crate::geometry::triangle::Triangle;
@@ -29,9 +29,6 @@ use zga_abi::format::ZaPrediction;
 const TALL: i32 = 16;
 /// Most columns of blocks of which that look is taken for a triangle that does not cover the tile.
 const FEW_COLUMNS: usize = 4;
-
-/// Numbers of the lanes.
-const LANE: [i32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// Draws triangle `t`, whose identifier is `id`.
 #[inline(always)]
@@ -50,8 +47,13 @@ pub fn triangle<S: Simd, const MODE: u8>(simd: S, t: &Triangle, id: u32, tile: &
     }
     store(simd, tile);
     let look = beyond - first >= TALL && tile.blocks.columns <= FEW_COLUMNS;
-    let hidden = is_hidden(simd, t, look, tile);
-    let drawn = visit::<S, MODE>(simd, t, hidden, tile);
+    let all = if t.plane.maximum <= tile.blocks.floor {
+        // No word is less than the tile's least depth.
+        Some(false)
+    } else {
+        is_hidden(simd, t, look, tile).then_some(true)
+    };
+    let drawn = visit::<S, MODE>(simd, t, all, tile);
     if drawn.rows != 0 {
         tile.pixels.counts.rows_touched(first, beyond);
         tile.blocks.floor = tile.blocks.floor.min(t.plane.minimum);
@@ -107,9 +109,10 @@ struct Drawn {
     fresh: u64,
 }
 
-/// Initialises cleared blocks and decides which of the others are bypassed.
+/// Initialises cleared blocks and decides which of the others are bypassed, where it is not known already that
+/// all of them are or none is.
 #[inline(always)]
-fn visit<S: Simd, const MODE: u8>(simd: S, t: &Triangle, hidden: bool, tile: &mut ZaTile<'_>) -> Drawn {
+fn visit<S: Simd, const MODE: u8>(simd: S, t: &Triangle, all: Option<bool>, tile: &mut ZaTile<'_>) -> Drawn {
     let mut drawn = Drawn { rows: 0, mixed: 0, fresh: 0 };
     for column in 0..tile.blocks.columns {
         let touched = tile.runs.touched[column];
@@ -122,7 +125,11 @@ fn visit<S: Simd, const MODE: u8>(simd: S, t: &Triangle, hidden: bool, tile: &mu
         let live = visited & !fresh;
         let mut bypassed = 0;
         if tile.may_bypass && live != 0 {
-            bypassed = if hidden { live } else { decide(simd, t, column, live, tile) };
+            bypassed = match all {
+                Some(true) => live,
+                Some(false) => 0,
+                None => decide(simd, t, column, live, tile),
+            };
             tile.visits.prediction += match tile.draw.prediction {
                 ZaPrediction::Plane => {
                     let rows = touched & tile.blocks.rows(live);
@@ -184,15 +191,14 @@ fn is_hidden<S: Simd>(simd: S, t: &Triangle, look: bool, tile: &mut ZaTile<'_>) 
 /// Which of the initialised blocks `live` of a column are bypassed.
 #[inline(always)]
 fn decide<S: Simd>(simd: S, t: &Triangle, column: usize, live: u64, tile: &mut ZaTile<'_>) -> u64 {
-    let (mut behind, mut near) = (0, 0);
-    let words = tile.blocks.words[column * TILE..][..TILE].as_chunks::<LANES>().0;
-    for (group, words) in words.iter().enumerate() {
-        let shift = (group * LANES) as u32;
-        if (live >> shift) & 0xFFFF != 0 {
-            let words = i32x16::from_slice(simd, words);
-            behind |= words.simd_lt(t.plane.minimum).to_bitmask() << shift;
-            near |= words.simd_lt(t.plane.maximum).to_bitmask() << shift;
-        }
+    let (mut behind, mut near, mut left) = (0, 0, live);
+    while left != 0 {
+        // 16 rows from the first on: all of them, mostly.
+        let row = left.trailing_zeros() as usize;
+        left &= !(0xFFFF << row);
+        let words = i32x16::from_slice(simd, &tile.blocks.words[column * TILE + row..][..LANES]);
+        behind |= words.simd_lt(t.plane.minimum).to_bitmask() << row;
+        near |= words.simd_lt(t.plane.maximum).to_bitmask() << row;
     }
     let mut bypassed = live & behind;
     // A stale word is an upper bound: what lies behind it is hidden, else it must be known.
@@ -294,7 +300,7 @@ fn rows<S: Simd, const MODE: u8>(simd: S, t: &Triangle, id: u32, drawn: &Drawn, 
     let (x, reach) = (tile.pixels.x, tile.pixels.reach);
     let origin = t.plane.value(x, tile.pixels.band_y);
     let watch = tile.writes && tile.may_bypass;
-    let (mut passed, mut fresh_passed) = (0, 0);
+    let (mut passed, mut fresh_passed, mut lost) = (0, 0, 0);
     let mut left = drawn.rows;
     while left != 0 {
         let row = left.trailing_zeros() as usize % TILE;
@@ -332,8 +338,15 @@ fn rows<S: Simd, const MODE: u8>(simd: S, t: &Triangle, id: u32, drawn: &Drawn, 
         if (drawn.fresh >> row) & 1 != 0 {
             fresh_passed += (bits & tile.runs.fresh[row]).count_ones();
         }
-        if watch && bits & tile.blocks.holders[row] != 0 {
-            tile.blocks.outdate(row, bits);
+        if watch {
+            let held = tile.blocks.holders[row];
+            tile.blocks.holders[row] = held & !bits;
+            lost |= u64::from(held & bits != 0) << row;
+        }
+    }
+    if lost != 0 {
+        for column in 0..tile.blocks.columns {
+            tile.blocks.outdate(column, lost & tile.runs.needed[column]);
         }
     }
     if MODE != NO_DEPTH {

@@ -36,9 +36,12 @@ impl ZaTile<'_> {
         let pass = if MODE == LESS { z < *stored } else { self.test.passes(z, *stored) };
         *stored = if pass & self.test.write { z } else { *stored };
         *seen = if pass { id } else { *seen };
-        let passed = u64::from(pass) << column;
-        if self.writes && passed & self.blocks.holders[row] != 0 {
-            self.blocks.outdate(row, passed);
+        if self.writes {
+            let held = self.blocks.holders[row];
+            self.blocks.holders[row] = held & !(u64::from(pass) << column);
+            if self.blocks.holders[row] != held {
+                self.blocks.outdate(column >> self.blocks.width_shift(), 1 << row);
+            }
         }
         pass
     }
