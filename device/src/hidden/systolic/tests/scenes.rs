@@ -135,18 +135,20 @@ fn specified(held: &Held, target: &Target) -> Drawn {
     let mut spans = 0;
     for item in &held.items {
         let before = depth.clone();
-        let (area, meets): (&Rectangle, Box<dyn Fn(u32, u32) -> bool>) = match item {
+        let (area, shape) = match item {
             Item::Clear { area, colour: to, depth: z } => {
                 clear(area, *to, *z, &mut colour, &mut depth);
-                (area, Box::new(|_, _| true))
+                (area, None)
             }
             Item::Primitive(shape, draw) => {
                 let draw = &held.draws[*draw as usize];
                 let drawn = specification::draw(&setting(draw), std::iter::once(shape), &mut colour, &mut depth);
                 spans += drawn.spans;
-                (&draw.scissor, Box::new(|x, y| specification::meets(shape, x as i32, y as i32)))
+                (&draw.scissor, Some(shape))
             }
         };
+        // A clear meets every pixel of its area.
+        let meets = |x: u32, y: u32| shape.is_none_or(|shape| specification::meets(shape, x as i32, y as i32));
         for y in area.y..area.bottom {
             let covered: Vec<u32> = (area.x..area.right).filter(|&x| meets(x, y)).collect();
             tokens[y as usize] += u32::from(!covered.is_empty());
