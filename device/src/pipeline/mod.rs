@@ -481,7 +481,9 @@ impl Path {
 /// The planes of a target from band `first` on.
 fn planes<'m>(memory: &'m mut [u32], target: &Target, setting: &Setting, first: usize) -> Surfaces<'m> {
     let (colour, depth) = surfaces(memory, target);
-    let depth = if setting.test.is_some() { Plane::new(depth, setting.depth_pitch, first) } else { Plane::none() };
+    // A block that is cleared in Za RAM only gets its depths with the first pixel drawn to it, tested or not.
+    let wanted = setting.test.is_some() || target.hidden_surface == HiddenSurface::Za;
+    let depth = if wanted { Plane::new(depth, setting.depth_pitch, first) } else { Plane::none() };
     Surfaces {
         colour: Plane::new(colour, setting.colour_pitch, first),
         depth,
