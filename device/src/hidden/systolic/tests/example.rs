@@ -10,8 +10,7 @@ const WIDTH: u32 = 8;
 fn moving(element: &Element) -> String {
     let star = if element.inside { "*" } else { "" };
     match element.control & control::PHASE {
-        control::T1 if element.a as i64 >= 0 => format!("T1 {}{star}", element.a),
-        control::T1 => format!("T1 {}{star}", (element.a as i64) + 1 - 1),
+        control::T1 => format!("T1 {}{star}", element.a as i64),
         control::T2 => format!("T2 {}{star}", element.a >> 32),
         control::T3 if element.control & control::REFRESH != 0 => "R".into(),
         control::T3 => format!("T3 {}{star}", element.a >> 32),
@@ -33,15 +32,10 @@ fn tables() -> String {
     let tokens = [token(1, 4, 40, 2, 1), token(3, 2, 50, -4, 2)];
     let beats: Vec<Beat> = tokens.iter().flat_map(|token| token.beats(&setting)).chain(Beat::REFRESH).collect();
     let mut machine = elements(WIDTH, setting, 32);
-    let head = |last: &str| {
-        let numbers: Vec<String> = (0..WIDTH).map(|n| format!("PE {n}")).collect();
-        format!(
-            "| clock | {} |{last}\n|{}\n",
-            numbers.join(" | "),
-            " --- |".repeat(WIDTH as usize + 1 + usize::from(!last.is_empty()))
-        )
-    };
-    let (mut registers, mut results) = (head(""), head(" bus |"));
+    let numbers: String = (0..WIDTH).map(|number| format!(" PE {number} |")).collect();
+    let rule = |columns: usize| " --- |".repeat(columns);
+    let mut registers = format!("| clock |{numbers}\n|{}\n", rule(9));
+    let mut results = format!("| clock |{numbers} bus |\n|{}\n", rule(10));
     for clock in 0..3 * 3 - 1 + WIDTH as usize {
         let driven = machine.clock(beats.get(clock).copied().unwrap_or_default(), FAR);
         let row = |cell: fn(&Element) -> String| machine.elements.iter().map(cell).collect::<Vec<_>>().join(" | ");

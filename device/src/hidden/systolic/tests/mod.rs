@@ -9,14 +9,12 @@
 //! | `example` | the worked example of the documentation, line by line |
 //! | `waves` | waveforms, read back |
 //! | `gates` | costs of the variants |
-//! | `rate` | how fast the models are stepped (not run by default) |
 
 mod cases;
 mod clocks;
 mod example;
 mod gates;
 mod machines;
-mod rate;
 mod scenes;
 mod waves;
 
