@@ -48,6 +48,13 @@ pub struct Background {
     pub depth: Option<i32>,
 }
 
+impl Background {
+    /// A clear of all pixels; planes that it leaves alone stay.
+    pub fn add(&mut self, colour: Option<u32>, depth: Option<i32>) {
+        *self = Background { colour: colour.or(self.colour), depth: depth.or(self.depth) };
+    }
+}
+
 /// A scene held back.
 #[derive(Debug, Default)]
 pub struct Held {
@@ -76,11 +83,10 @@ impl Held {
         self.items.extend(list.shapes.iter().map(|(shape, _)| Item::Primitive(*shape, number)));
     }
 
-    /// Adds a clear. One of all pixels before anything else is the background.
-    pub fn clear(&mut self, whole: bool, area: Rectangle, colour: Option<u32>, depth: Option<i32>) {
-        if whole && self.items.is_empty() {
-            self.background =
-                Background { colour: colour.or(self.background.colour), depth: depth.or(self.background.depth) };
+    /// Adds a clear, to the background or to what is drawn over it.
+    pub fn clear(&mut self, background: bool, area: Rectangle, colour: Option<u32>, depth: Option<i32>) {
+        if background {
+            self.background.add(colour, depth);
         } else {
             self.items.push(Item::Clear { area, colour, depth });
         }

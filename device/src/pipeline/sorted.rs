@@ -34,7 +34,8 @@ const CHUNK: usize = 16;
 pub(super) struct Sorted {
     /// Something was drawn or cleared.
     used: bool,
-    /// Something was drawn: no clear is the background any more.
+    /// There was a draw, or a clear that is drawn: no clear is the background any more. A draw of which nothing meets
+    /// the target counts, so that this does not depend on who finds that out.
     drawn: bool,
     background: Background,
     /// Depths where the target has no Z buffer; rows of `depth_pitch`.
@@ -128,17 +129,18 @@ impl Sorted {
             return;
         }
         self.make_ready(target);
-        let whole = area == crate::memory::areas::whole(&target.colour);
         let depth = clear.depth.map(|depth| depth as i32);
+        let background = area == crate::memory::areas::whole(&target.colour) && !self.drawn;
+        if !background {
+            self.before_draw(target);
+        }
         if is_held(target) {
-            self.held.clear(whole, area, clear.colour, depth);
+            self.held.clear(background, area, clear.colour, depth);
             return;
         }
-        if whole && !self.drawn {
-            self.background.colour = clear.colour.or(self.background.colour);
-            self.background.depth = depth.or(self.background.depth);
+        if background {
+            self.background.add(clear.colour, depth);
         } else {
-            self.before_draw(target);
             self.draw_rectangle(target, &area, clear.colour.is_some());
         }
         let pitches = Pitches::of(target);
