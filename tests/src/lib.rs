@@ -4,3 +4,4 @@ pub mod fuzz;
 pub mod hard;
 pub mod harness;
 pub mod oracle;
+pub mod script;

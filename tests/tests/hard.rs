@@ -1,6 +1,6 @@
 //! Every hard case of the manual, chapter "Numbers", as a test of its own. `--nocapture` prints the rows.
 
-use zga_tests::hard::{CASES, Row, card, depth, lines, rasteriser};
+use zga_tests::hard::{CASES, Row, card, depth, lines, rasteriser, systolic, za};
 
 fn check(row: &Row) {
     println!("{row}");
@@ -45,6 +45,21 @@ cases! {
     depth::equal_after_less,
     depth::offsets_at_the_limits,
     depth::planes_that_cross,
+    za::words_are_maxima,
+    za::last_of_thirty_two,
+    za::equal_to_the_word,
+    za::predictor_overflow,
+    za::one_pixel_in_a_cleared_block,
+    za::largest_depth,
+    za::no_stale_bypass,
+    za::widths_beside_blocks,
+    za::every_block_shape,
+    systolic::one_element,
+    systolic::equal_depths,
+    systolic::beyond_both_ends,
+    systolic::refresh_with_tokens_in_flight,
+    systolic::extreme_gradients,
+    systolic::disjoint_segments_permuted,
     lines::zero_length,
     lines::diamond_corners,
     lines::polylines_and_the_longest_line,

@@ -15,6 +15,8 @@ pub mod card;
 pub mod depth;
 pub mod lines;
 pub mod rasteriser;
+pub mod systolic;
+pub mod za;
 
 /// One row of the stability report.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -65,6 +67,21 @@ pub const CASES: &[fn() -> Row] = &[
     depth::equal_after_less,
     depth::offsets_at_the_limits,
     depth::planes_that_cross,
+    za::words_are_maxima,
+    za::last_of_thirty_two,
+    za::equal_to_the_word,
+    za::predictor_overflow,
+    za::one_pixel_in_a_cleared_block,
+    za::largest_depth,
+    za::no_stale_bypass,
+    za::widths_beside_blocks,
+    za::every_block_shape,
+    systolic::one_element,
+    systolic::equal_depths,
+    systolic::beyond_both_ends,
+    systolic::refresh_with_tokens_in_flight,
+    systolic::extreme_gradients,
+    systolic::disjoint_segments_permuted,
     lines::zero_length,
     lines::diamond_corners,
     lines::polylines_and_the_longest_line,

@@ -21,6 +21,9 @@
 //! ```
 
 pub mod depth;
+pub mod events;
+pub mod hidden;
+mod memory;
 pub mod options;
 pub mod packet;
 pub mod picture;
@@ -28,6 +31,8 @@ pub mod random;
 pub mod scenes;
 pub mod screen;
 
+pub use events::Events;
+pub use hidden::{Hidden, Path, Prediction};
 pub use options::{Camera, Feed, Options, Pixels, State};
 pub use picture::{Differences, Picture};
 pub use random::Random;

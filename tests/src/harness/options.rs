@@ -1,7 +1,9 @@
 //! How a card is built and how it draws.
 
+use super::hidden::Hidden;
 use super::packet::{EFFECT_DECAL, EFFECT_DEPTH, EFFECT_GOURAUD, EFFECT_PERSPECTIVE};
 use crate::oracle::{DepthFormat, DepthFunction};
+use std::fmt;
 use zga_device::Kernel;
 
 /// Which way packets go to the card.
@@ -73,10 +75,25 @@ pub struct Options {
     pub feed: Feed,
     /// Bytes of video memory for [`super::Screen::draw_buffer`].
     pub vertex_bytes: u32,
+    /// Who decides visibility, and how.
+    pub hidden: Hidden,
+    /// There is a Z buffer.
+    pub depth_buffer: bool,
+    /// Frame buffers, 1 or 2; they share the Z buffer.
+    pub frames: u32,
+}
+
+impl Options {
+    /// Whether depth can be tested.
+    #[must_use]
+    pub const fn has_depth(&self) -> bool {
+        self.depth_buffer || self.hidden.path.keeps_depths()
+    }
 }
 
 impl Default for Options {
-    /// XRGB8888, 24 bits of depth with 24 fraction bits, 8 sub-pixel bits, one thread, the best kernel, the ring.
+    /// XRGB8888, 24 bits of depth with 24 fraction bits, 8 sub-pixel bits, one thread, the best kernel, the ring,
+    /// the plain Z buffer, one frame.
     fn default() -> Self {
         Self {
             depth: DepthFormat::default(),
@@ -86,6 +103,9 @@ impl Default for Options {
             subpixel_bits: 8,
             feed: Feed::Ring,
             vertex_bytes: 0,
+            hidden: Hidden::default(),
+            depth_buffer: true,
+            frames: 1,
         }
     }
 }
@@ -123,7 +143,7 @@ impl Camera {
 }
 
 /// State of a draw.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct State {
     /// Whether depth is tested at all.
     pub depth_test: bool,
@@ -159,6 +179,16 @@ impl Default for State {
             camera: Camera::default(),
             piece: 0,
         }
+    }
+}
+
+impl fmt::Debug for State {
+    /// The camera only where it is not the identity.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { depth_test, function, write, scissor, camera, piece, .. } = self;
+        write!(f, "State {{ depth test {depth_test}, {function:?}, write {write}, scissor {scissor:?}, ")?;
+        write!(f, "effects {:#x}, pieces of {piece}", self.effects())?;
+        if *camera == Camera::default() { write!(f, " }}") } else { write!(f, ", {camera:?} }}") }
     }
 }
 

@@ -20,18 +20,24 @@ pub const DOORBELL: u32 = 0x0110;
 pub const FENCE_SEQUENCE: u32 = 0x0140;
 /// Size, colour base, pitch, format, depth base, pitch, format.
 pub const TARGET: u32 = 0x0200;
-/// Hidden-surface path, sub-pixel bits.
+/// Hidden-surface path, sub-pixel bits, fidelity, Za block, prediction and base, systolic variant, tile size.
 pub const PATH: u32 = 0x0240;
 /// Effects, depth control, material colour, tag, scissor minimum, scissor maximum.
 pub const DRAW_STATE: u32 = 0x0280;
 /// Object to eye, decal, eye to clip (16 each), viewport (6).
 pub const GEOMETRY: u32 = 0x0400;
+/// Pixel history: control, pixel, base, size.
+pub const PROBE: u32 = 0x0600;
+/// The frame shown: base, pitch, format, size.
+pub const SCANOUT: u32 = 0x0688;
 /// 1 clears the counters.
 pub const COUNTER_CONTROL: u32 = 0x0708;
 /// Counters, low word first.
 pub const COUNTERS: u32 = 0x1000;
 /// The PIO FIFO window.
 pub const FIFO: u32 = 0x8000;
+/// Za RAM.
+pub const ZA: u32 = 0x0200_0000;
 /// Video memory.
 pub const MEMORY: u32 = 0x4000_0000;
 /// The fence interrupt.
@@ -71,10 +77,11 @@ pub fn end_scene() -> Vec<u32> {
     packet(0x03, &[])
 }
 
-/// CLEAR of frame buffer and Z buffer.
+/// CLEAR of frame buffer, Z buffer or both.
 #[must_use]
-pub fn clear(colour: u32, depth: u32) -> Vec<u32> {
-    packet(0x04, &[3, colour, depth])
+pub fn clear(colour: Option<u32>, depth: Option<u32>) -> Vec<u32> {
+    let planes = u32::from(colour.is_some()) | u32::from(depth.is_some()) << 1;
+    packet(0x04, &[planes, colour.unwrap_or(0), depth.unwrap_or(0)])
 }
 
 /// DRAW_INLINE.
@@ -87,6 +94,38 @@ pub fn draw_inline(flags: u32, vertices: u32, words: &[u32], indices: &[u32]) ->
 #[must_use]
 pub fn draw_buffer(flags: u32, address: u32, vertices: u32, index_address: u32, indices: u32) -> Vec<u32> {
     packet(0x11, &[flags, address, vertices, index_address, indices])
+}
+
+/// FILL of a rectangle x, y, width, height.
+#[must_use]
+pub fn fill(base: u32, pitch: u32, format: u32, area: [u32; 4], value: u32) -> Vec<u32> {
+    packet(0x20, &[&[base, pitch, format][..], &area, &[value]].concat())
+}
+
+/// COPY of a rectangle x, y, width, height of a surface to another place in it.
+#[must_use]
+pub fn copy(base: u32, pitch: u32, format: u32, area: [u32; 4], to: [u32; 2]) -> Vec<u32> {
+    let [x, y, width, height] = area;
+    packet(0x21, &[format, base, pitch, x, y, base, pitch, to[0], to[1], width, height])
+}
+
+/// UPLOAD of one row.
+#[must_use]
+pub fn upload(address: u32, words: &[u32]) -> Vec<u32> {
+    let count = words.len() as u32;
+    packet(0x22, &[&[address, 4 * count, count, 1], words].concat())
+}
+
+/// DOWNLOAD of rows of words to a dense run.
+#[must_use]
+pub fn download(address: u32, pitch: u32, words: u32, rows: u32, destination: u32) -> Vec<u32> {
+    packet(0x23, &[address, pitch, words, rows, destination])
+}
+
+/// WRITE_BACK.
+#[must_use]
+pub fn write_back(destination: u32) -> Vec<u32> {
+    packet(0x32, &[destination])
 }
 
 /// FENCE.

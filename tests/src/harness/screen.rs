@@ -1,9 +1,12 @@
 //! A card with a target: draws, reads back, counts.
 //!
-//! Video memory holds, each at a multiple of 4096: the ring, a gap, the frame buffer, a gap, the Z buffer, a gap, room for
-//! vertices. Gaps and row ends are filled with canary words, which nothing may change.
+//! Video memory holds, each at a multiple of 4096: the ring, a gap, one or two frame buffers with a gap behind each, the
+//! Z buffer, a gap, room for vertices, room for what comes back. Gaps and row ends are filled with canary words, which
+//! nothing may change.
 
 use super::depth;
+use super::events::{Events, NAMES};
+use super::hidden::{Hidden, Path};
 use super::options::{Feed, Options, Pixels, State};
 use super::packet;
 use super::picture::Picture;
@@ -15,9 +18,11 @@ use zga_device::{Card, CardBus, CardOptions, Snapshot};
 /// Words of the ring.
 const RING_WORDS: u32 = 1 << 17;
 /// Bytes between the buffers.
-const GAP: u32 = 4096;
+pub(super) const GAP: u32 = 4096;
 /// What gaps and row ends hold.
 const CANARY: u32 = 0x5AFE_C0DE;
+/// Bytes of Za RAM: a word for each pixel of 1024 x 1024.
+const ZA_RAM: u32 = 1 << 22;
 /// Words that are queued before they are sent.
 const QUEUE_WORDS: usize = 1 << 16;
 /// Longer than any work of a test.
@@ -82,24 +87,27 @@ pub struct Counts {
 
 /// Places of the buffers, bytes.
 #[derive(Clone, Copy, Debug)]
-struct Places {
-    colour: u32,
-    colour_pitch: u32,
-    depth: u32,
-    depth_pitch: u32,
-    vertices: u32,
-    end: u32,
+pub(super) struct Places {
+    /// Of the frame drawn to.
+    pub colour: u32,
+    pub colours: [u32; 2],
+    pub colour_pitch: u32,
+    pub depth: u32,
+    pub depth_pitch: u32,
+    pub vertices: u32,
+    /// For what comes back: a word a pixel.
+    pub scratch: u32,
 }
 
 /// A card and its target.
 #[derive(Debug)]
 pub struct Screen {
     card: Card,
-    bus: CardBus,
-    width: u32,
-    height: u32,
-    options: Options,
-    places: Places,
+    pub(super) bus: CardBus,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) options: Options,
+    pub(super) places: Places,
     ring_put: u32,
     sequence: u32,
     in_scene: bool,
@@ -119,14 +127,16 @@ impl Screen {
         let pitch = |bytes: u32| bytes.next_multiple_of(64);
         let (colour_pitch, depth_pitch) = (pitch(width * options.pixels.bytes()), pitch(width * 4));
         let colour = 4 * RING_WORDS + GAP;
-        let depth = (colour + colour_pitch * height).next_multiple_of(GAP) + GAP;
+        let frame = (colour_pitch * height).next_multiple_of(GAP) + GAP;
+        let depth = colour + options.frames.clamp(1, 2) * frame;
         let vertices = (depth + depth_pitch * height).next_multiple_of(GAP) + GAP;
-        let end = (vertices + options.vertex_bytes).next_multiple_of(GAP).max(1 << 20);
+        let scratch = (vertices + options.vertex_bytes).next_multiple_of(GAP);
+        let end = (scratch + 4 * width * height).next_multiple_of(GAP).max(1 << 20);
         let card = Card::power_on(CardOptions {
             video_memory: end,
+            za_ram: ZA_RAM,
             threads: options.threads,
             kernel: options.kernel,
-            ..CardOptions::default()
         });
         let card = card.expect("the card has power");
         let mut screen = Self {
@@ -135,7 +145,15 @@ impl Screen {
             width,
             height,
             options: *options,
-            places: Places { colour, colour_pitch, depth, depth_pitch, vertices, end },
+            places: Places {
+                colour,
+                colours: [colour, colour + if options.frames == 2 { frame } else { 0 }],
+                colour_pitch,
+                depth,
+                depth_pitch,
+                vertices,
+                scratch,
+            },
             ring_put: 0,
             sequence: 0,
             in_scene: false,
@@ -162,21 +180,66 @@ impl Screen {
         self.bus.write32(packet::RING_BASE, 0);
         self.bus.write32(packet::RING_SIZE, RING_WORDS);
         (self.ring_put, self.state, self.in_scene) = (0, None, false);
+        self.set_target();
+    }
+
+    /// Sets the registers that BEGIN_SCENE samples.
+    fn set_target(&mut self) {
         let Places { colour, colour_pitch, depth, depth_pitch, .. } = self.places;
-        let Options { pixels, depth: format, subpixel_bits, .. } = self.options;
+        let Options { pixels, depth: format, subpixel_bits, depth_buffer, .. } = self.options;
+        let hidden = self.hidden();
+        let depth_pitch = if depth_buffer { depth_pitch } else { 0 };
         let size = self.height << 16 | self.width;
         let format = format.bits | format.fraction << 8;
         let target = [size, colour, colour_pitch, pixels as u32, depth, depth_pitch, format];
         self.push(packet::registers(packet::TARGET, &target));
-        self.push(packet::registers(packet::PATH, &[0, subpixel_bits]));
+        self.push(packet::registers(packet::PATH, &hidden.words(subpixel_bits)));
+    }
+
+    /// The registers as they are for the frame drawn to.
+    pub(super) const fn hidden(&self) -> Hidden {
+        let (hidden, Places { colour, colours, .. }) = (self.options.hidden, self.places);
+        if colour == colours[0] { hidden } else { hidden.of_second_frame(self.width, self.height) }
+    }
+
+    /// Ends the scene if one is open.
+    pub fn end(&mut self) {
+        if self.in_scene {
+            self.push(packet::end_scene());
+            self.in_scene = false;
+        }
+    }
+
+    /// Has another path, or the same in another way, draw from the next scene on, with or without the Z buffer.
+    pub fn set_hidden(&mut self, hidden: Hidden, depth_buffer: bool) {
+        self.end();
+        (self.options.hidden, self.options.depth_buffer) = (hidden, depth_buffer);
+        self.set_target();
+    }
+
+    /// Draws to another frame buffer from the next scene on.
+    pub fn set_frame(&mut self, frame: usize) {
+        self.end();
+        self.places.colour = self.places.colours[frame];
+        self.set_target();
+    }
+
+    /// Begins a scene unless one is open.
+    pub fn open(&mut self) {
+        self.begin(&self.state.unwrap_or_default());
     }
 
     /// Clears the whole target: black (identity 0) and the farthest depth. Identities begin anew.
     pub fn clear(&mut self) {
-        self.begin(&State::default());
-        let depth = self.options.depth.greatest();
-        self.push(packet::clear(0, depth));
+        let depth = self.options.has_depth().then(|| self.options.depth.greatest());
+        self.clear_planes(Some(0), depth, None);
         self.next_id = 1;
+    }
+
+    /// Clears planes of a rectangle: left, top, right, bottom, the last two exclusive.
+    pub fn clear_planes(&mut self, colour: Option<u32>, depth: Option<u32>, scissor: Option<[u32; 4]>) {
+        self.begin(&State { scissor, ..State::default() });
+        self.push(packet::clear(colour, depth));
     }
 
     /// Draws primitives in their own colours.
@@ -227,7 +290,7 @@ impl Screen {
         let (at, words) = (self.places.vertices, words_of(vertices));
         let index_at = at + 4 * words.len() as u32;
         let list = indices.unwrap_or(&[]);
-        assert!(index_at + 4 * list.len() as u32 <= self.places.end, "vertex_bytes is too small");
+        assert!(index_at + 4 * list.len() as u32 <= self.places.scratch, "vertex_bytes is too small");
         self.flush();
         self.bus.write_burst(packet::MEMORY + at, &words);
         self.bus.write_burst(packet::MEMORY + index_at, list);
@@ -237,19 +300,20 @@ impl Screen {
         self.push(packet::draw_buffer(flags, at, vertices.len() as u32, index_at, list.len() as u32));
     }
 
-    /// Ends the scene and reads the target back.
+    /// Ends the scene and reads the target back. What is cleared in Za RAM only is brought to memory for that.
     pub fn read(&mut self) -> Picture {
-        if self.in_scene {
-            self.push(packet::end_scene());
-            self.in_scene = false;
+        self.end();
+        if self.options.hidden.path == Path::Za {
+            self.settle();
         }
         self.flush();
-        let Places { colour, colour_pitch, depth, depth_pitch, vertices, .. } = self.places;
-        let mut words = vec![0; ((vertices - (colour - GAP)) / 4) as usize];
-        self.bus.read_burst(packet::MEMORY + colour - GAP, &mut words);
+        let Places { colour, colours, colour_pitch, depth, depth_pitch, vertices, .. } = self.places;
+        let first = colours[0] - GAP;
+        let mut words = vec![0; ((vertices - first) / 4) as usize];
+        self.bus.read_burst(packet::MEMORY + first, &mut words);
         let (width, height) = (self.width as usize, self.height as usize);
         let pixels = self.options.pixels;
-        let word = |at: u32| ((at - (colour - GAP)) / 4) as usize;
+        let word = |at: u32| ((at - first) / 4) as usize;
         let rows = |base: u32, pitch: u32| (0..height).map(move |j| word(base) + j * (pitch / 4) as usize);
         let mut picture =
             Picture { width: self.width, height: self.height, pixels, colour: vec![], depth: vec![], strays: 0 };
@@ -257,6 +321,13 @@ impl Screen {
         for start in rows(colour, colour_pitch) {
             for x in 0..width {
                 picture.colour.push(take_pixel(&mut words, start, x, pixels));
+            }
+        }
+        for other in colours.into_iter().filter(|&other| other != colour) {
+            for start in rows(other, colour_pitch) {
+                for x in 0..width {
+                    let _ = take_pixel(&mut words, start, x, pixels);
+                }
             }
         }
         for start in rows(depth, depth_pitch) {
@@ -267,15 +338,22 @@ impl Screen {
         picture
     }
 
+    /// All counters since [`Screen::clear_counts`].
+    pub fn events(&mut self) -> Events {
+        self.flush();
+        let mut events = Events([0; NAMES.len()]);
+        for (at, value) in (packet::COUNTERS..).step_by(8).zip(&mut events.0) {
+            *value = u64::from(self.bus.read32(at)) | u64::from(self.bus.read32(at + 4)) << 32;
+        }
+        events
+    }
+
     /// Counts of the drawing units since [`Screen::clear_counts`].
     pub fn counts(&mut self) -> Counts {
-        self.flush();
-        let mut counter = |index: u32| {
-            let low = self.bus.read32(packet::COUNTERS + 8 * index);
-            u64::from(low) | u64::from(self.bus.read32(packet::COUNTERS + 8 * index + 4)) << 32
-        };
+        let events = self.events();
+        let counter = |index: usize| events.0[index];
         Counts {
-            clocks: [2, 3, 4].map(&mut counter),
+            clocks: [2, 3, 4].map(counter),
             vertices: counter(10),
             primitives: counter(11),
             clipped: counter(12),
@@ -337,7 +415,7 @@ impl Screen {
         }
     }
 
-    fn push(&mut self, packet: Vec<u32>) {
+    pub(super) fn push(&mut self, packet: Vec<u32>) {
         if self.queued + packet.len() > QUEUE_WORDS {
             self.flush();
         }
@@ -378,7 +456,7 @@ impl Screen {
     }
 
     fn fill_gaps(&mut self) {
-        let from = self.places.colour - GAP;
+        let from = self.places.colours[0] - GAP;
         let words = vec![CANARY; ((self.places.vertices - from) / 4) as usize];
         self.bus.write_burst(packet::MEMORY + from, &words);
     }

@@ -9,6 +9,7 @@
 //! | [`depth`] | the depth on the exact plane, and the depth that the card's number formats prescribe | the card's manual, "Depth" |
 //! | [`image`] | the picture bit for bit: [`draw`] | submission order, one depth test for each covered pixel |
 //! | [`truth`] | the picture with unrounded depths: [`draw_true`] | the same, compared as rationals |
+//! | [`canvas`] | the picture of many commands: any state, clears of planes and rectangles | the same |
 //! | [`clip`] | the unsnapped polygon of a homogeneous triangle | Sutherland and Hodgman 1974; Blinn and Newell 1978 |
 //! | [`colour`] | affine and perspective-correct colours at a pixel centre | barycentric interpolation; Blinn 1992, "Hyperbolic interpolation" |
 //! | [`exact`] | fractions, floors and roundings | arithmetic |
@@ -29,6 +30,7 @@
 //! assert_eq!(image.depth[15], (1 << 24) - 1);
 //! ```
 
+pub mod canvas;
 pub mod clip;
 pub mod colour;
 pub mod depth;
