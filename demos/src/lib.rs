@@ -5,6 +5,7 @@
 //! | [`scene`], [`mesh`], [`teapot`], [`demos`] | what is drawn, independent of any card |
 //! | [`play`] | a scene through driver and card, and what it cost |
 //! | [`mod@bench`] | the benchmark scenes |
+//! | [`paths`] | a scene on every hidden-surface path, compared |
 //! | [`registers`] | the manual of the register map |
 //! | [`picture`] | PNG files and exact comparison |
 //! | [`cli`] | the commands |
@@ -21,11 +22,13 @@
 //! ```
 
 pub mod bench;
+mod canvas;
 pub mod cli;
 pub mod demos;
 mod error;
 mod limits;
 pub mod mesh;
+pub mod paths;
 pub mod picture;
 pub mod play;
 pub mod registers;

@@ -46,6 +46,17 @@ impl Picture {
         Self { width: frame.width, height: frame.height, rgb: rgb(&frame.pixels) }
     }
 
+    /// The picture as XRGB8888 words.
+    #[must_use]
+    pub fn xrgb(&self) -> Vec<u32> {
+        self.rgb
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .map(|[red, green, blue]| u32::from_be_bytes([0, *red, *green, *blue]))
+            .collect()
+    }
+
     /// Colour of a pixel; `None` outside.
     #[must_use]
     pub fn at(&self, x: u32, y: u32) -> Option<[u8; 3]> {

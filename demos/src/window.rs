@@ -13,6 +13,7 @@ use zga_abi::{Counter, Reg};
 use zga_driver::CardInfo;
 
 use crate::error::{Error, Result};
+use crate::paths::View;
 use crate::picture::Picture;
 use crate::play::{Look, Session, Settings};
 use crate::scene::Scene;
@@ -26,7 +27,7 @@ const ZOOM_STEP: f64 = 0.92;
 const FRAME_WAIT: Duration = Duration::from_millis(50);
 /// What the keys do.
 const HELP: &str =
-    "drag: orbit, wheel: zoom, P path, F fidelity, D decals, W wireframe, Space animation, S save, Esc end";
+    "drag: orbit, wheel: zoom, P path, F fidelity, V view, D decals, W wireframe, Space animation, S save, Esc end";
 
 /// A window for a picture of this size; none where there is no display.
 pub(crate) fn open(name: &str, size: [u32; 2]) -> Option<Window> {
@@ -44,6 +45,8 @@ pub(crate) struct Show<'a> {
     pub save: &'a dyn Fn(u32) -> PathBuf,
     /// How it is looked at first.
     pub look: Look,
+    /// A view of the path is painted over it at first.
+    pub view: bool,
 }
 
 /// What mouse and keys have set.
@@ -57,6 +60,7 @@ struct Controls {
     frame: u32,
     animated: bool,
     help: bool,
+    view: bool,
 }
 
 impl Show<'_> {
@@ -78,7 +82,9 @@ impl Show<'_> {
             frame: 0,
             animated: false,
             help: false,
+            view: self.view,
         };
+        let mut painted: Option<Picture> = None;
         let mut shown: Option<Controls> = None;
         let mut title = String::new();
         let mut mouse: Option<(f32, f32)> = None;
@@ -107,6 +113,7 @@ impl Show<'_> {
                 session.driver().finish().map_err(fault())?;
                 shown = Some(controls);
                 let clocks = session.driver().counters().get(Counter::CyclesTotal);
+                painted = controls.painted(session, &scene).transpose()?;
                 let told = controls.title(self.name, clocks);
                 if told != title {
                     window.set_title(&told);
@@ -116,17 +123,20 @@ impl Show<'_> {
             match monitor.wait_next(FRAME_WAIT) {
                 Some(frame) => {
                     let size = [frame.width(), frame.height()].map(|pixels| pixels as usize);
+                    let view = painted.as_ref().map(Picture::xrgb);
                     // A window that cannot be drawn to any more is as good as closed.
-                    if window.update_with_buffer(frame.pixels(), size[0], size[1]).is_err() {
+                    if window.update_with_buffer(view.as_deref().unwrap_or(frame.pixels()), size[0], size[1]).is_err() {
                         break;
                     }
                 }
                 None => window.update(),
             }
             if window.is_key_pressed(Key::S, KeyRepeat::No) {
-                let frame = session.driver().capture().map_err(fault())?;
                 let file = self.free_file(&mut saved);
-                Picture::of_frame(&frame).save(&file)?;
+                match &painted {
+                    Some(view) => view.save(&file)?,
+                    None => Picture::of_frame(&session.driver().capture().map_err(fault())?).save(&file)?,
+                }
                 window.set_title(&format!("ZGA: saved {}", file.display()));
             }
         }
@@ -159,9 +169,17 @@ impl Controls {
                 };
             }
             Key::Space => self.animated = !self.animated,
+            Key::V => self.view = !self.view,
             Key::H => self.help = !self.help,
             _ => {}
         }
+    }
+
+    /// The view of the path over the frame that was just drawn, if it is asked for and the path has one.
+    fn painted(&self, session: &mut Session, scene: &Scene) -> Option<Result<Picture>> {
+        let view = View::of(self.settings.hidden_surface).filter(|_| self.view)?;
+        let frame = session.driver().capture().map_err(Error::driver("view"));
+        Some(frame.and_then(|frame| view.paint(session, scene, self.look, &frame)))
     }
 
     fn drag(&mut self, right: f32, down: f32) {
@@ -177,8 +195,10 @@ impl Controls {
         let path = self.settings.hidden_surface.name();
         let clocked = if self.settings.fidelity == Fidelity::Clocked { ", clocked" } else { "" };
         let decals = if self.look.decals { "" } else { ", without decals" };
+        let view = View::of(self.settings.hidden_surface).filter(|_| self.view);
+        let view = view.map_or(String::new(), |view| format!(", view of {}", view.name()));
         let wires = if self.look.wireframe { ", wireframe" } else { "" };
-        format!("ZGA: {name}, {path} path{clocked}{decals}{wires}, {} clocks (H for help)", grouped(clocks))
+        format!("ZGA: {name}, {path} path{clocked}{view}{decals}{wires}, {} clocks (H for help)", grouped(clocks))
     }
 }
 
@@ -208,7 +228,17 @@ mod tests {
             tile_size: [8, 8],
         };
         let look = Look { decals: true, wireframe: false };
-        Controls { look, settings, yaw: 0.0, pitch: 0.0, zoom: 1.0, frame: 0, animated: false, help: false }
+        Controls {
+            look,
+            settings,
+            yaw: 0.0,
+            pitch: 0.0,
+            zoom: 1.0,
+            frame: 0,
+            animated: false,
+            help: false,
+            view: false,
+        }
     }
 
     fn card(paths: u32) -> CardInfo {
@@ -226,6 +256,15 @@ mod tests {
             "ZGA: teapot, zbuffer path, clocked, without decals, wireframe, 5 clocks (H for help)"
         );
         assert!(Controls { help: true, ..start() }.title("teapot", 5).contains("P path, F fidelity"));
+    }
+
+    #[test]
+    fn press_v_views_what_the_path_knows() {
+        let mut controls = start();
+        controls.press(Key::V, &card(0b1111));
+        assert!(!controls.title("teapot", 5).contains("view"), "the plain Z buffer has none");
+        controls.settings.hidden_surface = HiddenSurface::Systolic;
+        assert_eq!(controls.title("teapot", 5), "ZGA: teapot, systolic path, view of tokens, 5 clocks (H for help)");
     }
 
     #[test]

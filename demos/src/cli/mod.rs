@@ -8,12 +8,14 @@ mod capture;
 mod flags;
 mod list;
 mod main_job;
+mod paths;
 mod pixel;
 mod progress;
 mod registers;
 mod show;
 mod source;
 mod trace;
+mod waves;
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
@@ -55,6 +57,8 @@ enum Command {
     Capture(capture::Capture),
     Pixel(pixel::Pixel),
     Trace(trace::Trace),
+    Paths(paths::Paths),
+    Waves(waves::Waves),
     Bench(bench::Bench),
     Registers(registers::Registers),
 }
@@ -78,6 +82,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Capture(command)) => command.run(),
         Some(Command::Pixel(command)) => command.run(),
         Some(Command::Trace(command)) => command.run(),
+        Some(Command::Paths(command)) => command.run(),
+        Some(Command::Waves(command)) => command.run(),
         Some(Command::Bench(command)) => command.run(),
         Some(Command::Registers(command)) => command.run(),
     };

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::flags::{CardFlags, LookFlags};
+use super::flags::{CardFlags, LookFlags, named};
 use super::source::Source;
 use super::{Verdict, note, print, progress};
 use crate::error::{Error, Result};
+use crate::paths::View;
 use crate::picture::{self, Picture};
 use crate::play::{Asked, Session};
 use crate::scene::Scene;
@@ -18,12 +19,12 @@ pub(super) const FOLDER: &str = "zga-out";
 
 /// Show a demo, a scene file or a mesh
 ///
-/// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, D decals, W wireframe, Space animation, S
-/// saves a picture, H help, Esc ends; the title tells path and clocks. With --headless, one of --out, --depth, --report,
+/// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, V what the path knows, D decals, W
+/// wireframe, Space animation, S saves a picture, H help, Esc ends; the title tells path and clocks. With --headless, one of --out, --depth, --report,
 /// or no display: as files.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Examples:\n  zga show teapot\n  zga show decal-compare --headless --out frames --frames 90\n  zga show spot.obj --out spot.png --depth spot-depth.png --report spot.json\n  zga show teapot --hidden-surface za --za-block 8x8 --za-prediction plane --report za.json"
+    after_help = "Examples:\n  zga show teapot\n  zga show decal-compare --headless --out frames --frames 90\n  zga show spot.obj --out spot.png --depth spot-depth.png --report spot.json\n  zga show teapot --hidden-surface za --za-block 8x8 --za-prediction plane --report za.json\n  zga show za --view za --out za-words.png"
 )]
 pub(super) struct Show {
     /// A demo, a scene file (.json) or a mesh (.obj, .gltf, .glb)
@@ -44,6 +45,10 @@ pub(super) struct Show {
     /// Write what the last frame called for and what it cost, as JSON
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+    /// Paint what a path knows over the picture, drawn on that path: the Za words, the tokens of each line of the
+    /// systolic array, or the lists of the tiles
+    #[arg(long, value_name = "VIEW", value_parser = named(View::NAMED))]
+    view: Option<View>,
     #[command(flatten)]
     look: LookFlags,
     #[command(flatten)]
@@ -57,10 +62,10 @@ impl Show {
             let (path, frames) = (path.display(), self.frames);
             return Err(Error::Use(format!("--out {path} is one file, but --frames asks for {frames}: name a folder")));
         }
-        let asked = self.card.asked();
+        let asked = viewed(self.card.asked(), self.view)?;
         let source = Source::open(&self.what, asked.size)?;
         let wants_files = self.headless || self.out.is_some() || self.depth.is_some() || self.report.is_some();
-        if !wants_files && show_window(&source, &asked, self.look)? {
+        if !wants_files && show_window(&source, &asked, self.look, self.view.is_some())? {
             return Ok(Verdict::Good);
         }
         if !wants_files {
@@ -77,14 +82,18 @@ impl Show {
         let picture = self.out.is_some() || (self.depth.is_none() && self.report.is_none());
         let mut text = String::new();
         for number in 0..self.frames {
-            let (frame, cost) = session.frame(&source.scene(number), self.look.look())?;
+            let (scene, look) = (source.scene(number), self.look.look());
+            let (frame, cost) = session.frame(&scene, look)?;
             session.take_warnings().iter().for_each(|line| note(&format!("warning: {line}")));
             if picture {
                 let file = match &self.out {
                     Some(path) if is_png(path) => path.clone(),
                     _ => folder.join(source.file_name(number, self.frames, "png")),
                 };
-                Picture::of_frame(&frame).save(&file)?;
+                match self.view {
+                    Some(view) => view.paint(&mut session, &scene, look, &frame)?.save(&file)?,
+                    None => Picture::of_frame(&frame).save(&file)?,
+                }
                 text.push_str(&format!("{}  {}\n", file.display(), frame.hash));
             }
             if let (Some(file), true) = (&self.report, number + 1 == self.frames) {
@@ -95,6 +104,9 @@ impl Show {
             bar.inc(1);
         }
         bar.finish_and_clear();
+        if let (Some(view), true) = (self.view, picture) {
+            text.push_str(&format!("{}\n", view.key()));
+        }
         if let Some(file) = &self.depth {
             let maximum = session.settings().depth.maximum();
             picture::save_depth(file, &session.depths()?, session.size(), maximum)?;
@@ -105,22 +117,43 @@ impl Show {
     }
 }
 
+/// What is asked for, on the path that a view is of.
+fn viewed(mut asked: Asked, view: Option<View>) -> Result<Asked> {
+    if let Some(view) = view {
+        let path = asked.card.hidden_surface.get_or_insert(view.path());
+        if *path != view.path() {
+            let (view, needed, asked) = (view.name(), view.path().name(), path.name());
+            let why = format!("shows what the {needed} path knows, but --hidden-surface asks for {asked}");
+            return Err(Error::Use(format!("--view: {view} {why}")));
+        }
+    }
+    Ok(asked)
+}
+
 fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
 }
 
 /// Shows a source in a window until it is closed; false where there is no display.
-fn show_window(source: &Source, asked: &Asked, look: LookFlags) -> Result<bool> {
+fn show_window(source: &Source, asked: &Asked, look: LookFlags, view: bool) -> Result<bool> {
     let first = source.scene(0);
-    let Some(window) = window::open(&source.name, first.size) else { return Ok(false) };
+    let Some(window) = window::open(&source.name, first.size) else {
+        return Ok(false);
+    };
     let mut session = Session::open(&source.name, &first, asked)?;
-    in_window(source, &mut session, window, look)?;
+    in_window(source, &mut session, window, look, view)?;
     Ok(true)
 }
 
-/// Shows a source in an open window until it is closed.
-pub(super) fn in_window(source: &Source, session: &mut Session, window: minifb::Window, look: LookFlags) -> Result<()> {
+/// Shows a source in an open window until it is closed, at first with a view of the path or without.
+pub(super) fn in_window(
+    source: &Source,
+    session: &mut Session,
+    window: minifb::Window,
+    look: LookFlags,
+    view: bool,
+) -> Result<()> {
     let scene = |frame: u32| -> Scene { source.scene(frame) };
     let save = |number: u32| Path::new(FOLDER).join(format!("{}-{number:04}.png", source.stem));
-    Shown { name: &source.name, scene: &scene, save: &save, look: look.look() }.run(session, window)
+    Shown { name: &source.name, scene: &scene, save: &save, look: look.look(), view }.run(session, window)
 }

@@ -6,6 +6,7 @@ mod curve;
 mod decal_compare;
 mod depth;
 mod palette;
+mod paths;
 mod points;
 mod raster;
 mod shapes;
@@ -109,6 +110,24 @@ pub const DEMOS: &[Demo] = &[
         description: "triangles thinner than a pixel that share every edge: no hole, no double pixel",
         frames: 1,
         scene: raster::slivers,
+    },
+    Demo {
+        name: "za",
+        description: "a wall whose Za blocks reject the pillars behind it, under a sky that stays cleared",
+        frames: 1,
+        scene: paths::za,
+    },
+    Demo {
+        name: "systolic",
+        description: "tents one before the other: ever more plane segments on the lines of the systolic array",
+        frames: 1,
+        scene: paths::systolic,
+    },
+    Demo {
+        name: "tile",
+        description: "large, thin and many small triangles: short and long lists of the tile unit",
+        frames: 1,
+        scene: paths::tile,
     },
 ];
 

@@ -17,5 +17,5 @@ mod settings;
 
 pub use cost::{Cost, effect_names, unit_names};
 pub use look::Look;
-pub use session::Session;
+pub use session::{Session, ZaWords};
 pub use settings::{Asked, KERNELS, MOST_ZA_RAM, Settings, check_kernel, za_ram};

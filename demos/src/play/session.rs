@@ -1,5 +1,7 @@
 //! A card with power, the driver that opened it, and the meshes of a scene in its video memory.
 
+mod survey;
+
 use std::io::Write;
 use std::time::Instant;
 
@@ -7,11 +9,13 @@ use zga_abi::Bus;
 use zga_abi::format;
 use zga_device::{Card, CardBus, CardOptions, Monitor};
 use zga_driver::bus::RecordingBus;
-use zga_driver::{Camera, Driver, DriverError, Frame, MeshBuffer, Target, TargetOptions, Vertex};
+use zga_driver::{Camera, Driver, DriverError, Frame, MeshBuffer, Rectangle, Target, TargetOptions, Vertex};
 
 use super::{Asked, Cost, Look, Settings, check_kernel, za_ram};
 use crate::error::{Error, Result};
 use crate::scene::{self, Batch, Colour, Scene, Topology};
+
+pub use survey::ZaWords;
 
 /// Video memory is taken in steps of this, and at least four of them.
 const MEMORY_STEP: u64 = 16 << 20;
@@ -189,7 +193,7 @@ impl<B: Bus> Session<B> {
     fn submit(&mut self, scene: &Scene) -> Result<()> {
         let view = (scene.camera, scene.background);
         self.view = Some(view);
-        self.encode(view)?;
+        self.encode(view, None)?;
         self.driver.present(&self.target).map_err(Error::driver(&self.name))
     }
 
@@ -219,14 +223,16 @@ impl<B: Bus> Session<B> {
         Ok(())
     }
 
-    /// Draws what is in video memory.
-    fn encode(&mut self, (from, background): (scene::Camera, Colour)) -> Result<()> {
+    /// Draws what is in video memory, all of it or what lies inside `cut`; the clear is of everything.
+    fn encode(&mut self, (from, background): (scene::Camera, Colour), cut: Option<Rectangle>) -> Result<()> {
         let Self { name, driver, target, meshes, drawn, .. } = self;
         let fault = || Error::driver(name.as_str());
         drawn.clear();
         driver.set_camera(camera(&from)).map_err(fault())?;
         driver.begin_scene(target).map_err(fault())?;
+        driver.set_scissor(None);
         driver.clear(Some(background), Some(1.0)).map_err(fault())?;
+        driver.set_scissor(cut);
         for Uploaded { batch, mesh } in meshes {
             if mesh.primitives() == 0 {
                 continue;
@@ -277,7 +283,7 @@ impl<B: Bus> Session<B> {
         let depths = match (self.driver.capture_depth(&self.target), self.view) {
             (Err(DriverError::DepthNotKept { .. }), Some(view)) => {
                 self.driver.set_keep_depth(true);
-                let drawn = self.encode(view);
+                let drawn = self.encode(view, None);
                 self.driver.set_keep_depth(false);
                 drawn?;
                 self.driver.capture_depth(&self.target)
