@@ -21,7 +21,11 @@
 //! | [`gates`] | what the variants cost in gates |
 //! | [`waves`] | waveforms of the registers (VCD) |
 //!
-//! Clocks: 3 a token, 3 a refresh token, at least N between refresh tokens, N + 2 at the end; see
+//! Duties: visibility and colours of a scene, line by line. Inputs: a scene that was [held back](super::held), its target.
+//! Outputs: frame buffer, Z buffer if there is one, events ([`SystolicCounts`]), waveforms.
+//!
+//! # Clocks
+//! 3 a token, 3 a refresh token, at least N between refresh tokens, N + 2 at the end; see
 //! [`closed_form`](mod@closed_form). Interpolated colours are shaded once for each pixel they are seen at, 1 clock
 //! each. Depths are loaded and stored along with the refresh tokens where there is a Z buffer: no clocks.
 #![doc = include_str!("worked_example.md")]
