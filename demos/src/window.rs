@@ -3,10 +3,12 @@
 //! Duties: turns mouse and keys into cameras, looks and settings, has the card draw when something changed, and shows
 //! what scan-out puts on the cable. Inputs from: minifb, [`zga_device::Monitor`]. Outputs to: [`Session`].
 
+use std::cell::RefCell;
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::time::Duration;
 
-use minifb::{Key, KeyRepeat, MouseButton, MouseMode, Window, WindowOptions};
+use minifb::{InputCallback, Key, MouseButton, MouseMode, Window, WindowOptions};
 use zga_abi::format::{Fidelity, HiddenSurface};
 use zga_abi::packet::Opcode;
 use zga_abi::{Counter, Reg};
@@ -49,6 +51,39 @@ pub(crate) struct Show<'a> {
     pub view: bool,
 }
 
+/// Keys in the order in which they went down. A key that is down and up again while a frame is drawn is among them, which
+/// a look at the keyboard once a frame would miss.
+#[derive(Clone, Debug, Default)]
+struct Taps(Rc<RefCell<Keys>>);
+
+#[derive(Debug, Default)]
+struct Keys {
+    /// What is down: a key that is held says so again and again.
+    down: Vec<Key>,
+    tapped: Vec<Key>,
+}
+
+impl Taps {
+    /// The keys since the last call.
+    fn take(&self) -> Vec<Key> {
+        std::mem::take(&mut self.0.borrow_mut().tapped)
+    }
+}
+
+impl InputCallback for Taps {
+    fn add_char(&mut self, _: u32) {}
+
+    fn set_key_state(&mut self, key: Key, down: bool) {
+        let mut keys = self.0.borrow_mut();
+        if !down {
+            keys.down.retain(|held| *held != key);
+        } else if !keys.down.contains(&key) {
+            keys.down.push(key);
+            keys.tapped.push(key);
+        }
+    }
+}
+
 /// What mouse and keys have set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Controls {
@@ -85,16 +120,23 @@ impl Show<'_> {
             view: self.view,
         };
         let mut painted: Option<Picture> = None;
-        let mut shown: Option<Controls> = None;
+        let mut shown: Option<(Controls, bool)> = None;
         let mut title = String::new();
         let mut mouse: Option<(f32, f32)> = None;
         let mut saved = 0;
-        while window.is_open() && !window.is_key_down(Key::Escape) {
-            for key in window.get_keys_pressed(KeyRepeat::No) {
-                controls.press(key, session.driver().card_info());
+        let taps = Taps::default();
+        window.set_input_callback(Box::new(taps.clone()));
+        while window.is_open() {
+            let tapped = taps.take();
+            if tapped.contains(&Key::Escape) {
+                break;
             }
+            for key in &tapped {
+                controls.press(*key, session.driver().card_info());
+            }
+            let dragged = window.get_mouse_down(MouseButton::Left);
             let at = window.get_mouse_pos(MouseMode::Pass);
-            if let (Some(from), Some(to), true) = (mouse, at, window.get_mouse_down(MouseButton::Left)) {
+            if let (Some(from), Some(to), true) = (mouse, at, dragged) {
                 controls.drag(to.0 - from.0, to.1 - from.1);
             }
             mouse = at;
@@ -104,16 +146,19 @@ impl Show<'_> {
             if controls.animated {
                 controls.frame = controls.frame.wrapping_add(1);
             }
-            if shown != Some(controls) {
+            if shown != Some((controls, dragged)) {
                 let mut scene = (self.scene)(controls.frame);
                 scene.camera = scene.camera.orbited(controls.yaw, controls.pitch, controls.zoom);
                 session.set(controls.settings)?;
                 session.driver().clear_counters();
                 session.draw(&scene, controls.look)?;
                 session.driver().finish().map_err(fault())?;
-                shown = Some(controls);
-                let clocks = session.driver().counters().get(Counter::CyclesTotal);
-                painted = controls.painted(session, &scene).transpose()?;
+                shown = Some((controls, dragged));
+                let counters = session.driver().counters();
+                // How often the picture was scanned out meanwhile depends on the host.
+                let clocks = counters.get(Counter::CyclesTotal) - counters.get(Counter::CyclesScanout);
+                // Some views take seconds: too long to follow the mouse.
+                painted = if dragged { None } else { controls.painted(session, &scene).transpose()? };
                 let told = controls.title(self.name, clocks);
                 if told != title {
                     window.set_title(&told);
@@ -131,7 +176,7 @@ impl Show<'_> {
                 }
                 None => window.update(),
             }
-            if window.is_key_pressed(Key::S, KeyRepeat::No) {
+            if tapped.contains(&Key::S) {
                 let file = self.free_file(&mut saved);
                 match &painted {
                     Some(view) => view.save(&file)?,
@@ -187,7 +232,7 @@ impl Controls {
         self.pitch = (self.pitch + f64::from(down) * TURN_PER_PIXEL).clamp(-3.0, 3.0);
     }
 
-    /// The window's title; `clocks`: what the frame cost.
+    /// The window's title; `clocks`: what drawing the frame cost.
     fn title(&self, name: &str, clocks: u64) -> String {
         if self.help {
             return format!("ZGA: {name}: {HELP}");
@@ -198,7 +243,10 @@ impl Controls {
         let view = View::of(self.settings.hidden_surface).filter(|_| self.view);
         let view = view.map_or(String::new(), |view| format!(", view of {}", view.name()));
         let wires = if self.look.wireframe { ", wireframe" } else { "" };
-        format!("ZGA: {name}, {path} path{clocked}{view}{decals}{wires}, {} clocks (H for help)", grouped(clocks))
+        format!(
+            "ZGA: {name}, {path} path{clocked}{view}{decals}{wires}, {} clocks to draw (H for help)",
+            grouped(clocks)
+        )
     }
 }
 
@@ -248,14 +296,24 @@ mod tests {
 
     #[test]
     fn title_tells_what_is_switched_and_the_keys() {
-        assert_eq!(start().title("teapot", 1234), "ZGA: teapot, zbuffer path, 1 234 clocks (H for help)");
+        assert_eq!(start().title("teapot", 1234), "ZGA: teapot, zbuffer path, 1 234 clocks to draw (H for help)");
         let mut bare = Controls { look: Look { decals: false, wireframe: true }, ..start() };
         bare.settings.fidelity = Fidelity::Clocked;
         assert_eq!(
             bare.title("teapot", 5),
-            "ZGA: teapot, zbuffer path, clocked, without decals, wireframe, 5 clocks (H for help)"
+            "ZGA: teapot, zbuffer path, clocked, without decals, wireframe, 5 clocks to draw (H for help)"
         );
         assert!(Controls { help: true, ..start() }.title("teapot", 5).contains("P path, F fidelity"));
+    }
+
+    #[test]
+    fn taps_keys_that_are_up_again_and_held_ones_count_once() {
+        let mut taps = Taps::default();
+        let events = [(Key::P, true), (Key::P, false), (Key::F, true), (Key::F, true), (Key::P, true)];
+        events.into_iter().for_each(|(key, down)| taps.set_key_state(key, down));
+        assert_eq!(taps.take(), [Key::P, Key::F, Key::P]);
+        taps.set_key_state(Key::F, true);
+        assert!(taps.take().is_empty());
     }
 
     #[test]
@@ -264,7 +322,10 @@ mod tests {
         controls.press(Key::V, &card(0b1111));
         assert!(!controls.title("teapot", 5).contains("view"), "the plain Z buffer has none");
         controls.settings.hidden_surface = HiddenSurface::Systolic;
-        assert_eq!(controls.title("teapot", 5), "ZGA: teapot, systolic path, view of tokens, 5 clocks (H for help)");
+        assert_eq!(
+            controls.title("teapot", 5),
+            "ZGA: teapot, systolic path, view of tokens, 5 clocks to draw (H for help)"
+        );
     }
 
     #[test]

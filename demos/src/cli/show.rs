@@ -19,9 +19,9 @@ pub(super) const FOLDER: &str = "zga-out";
 
 /// Show a demo, a scene file or a mesh
 ///
-/// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, V what the path knows, D decals, W
-/// wireframe, Space animation, S saves a picture, H help, Esc ends; the title tells path and clocks. With --headless, one of --out, --depth, --report,
-/// or no display: as files.
+/// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, V what the path knows, D decals, W wireframe,
+/// Space animation, S saves a picture, H help, Esc ends; the title tells path and clocks. With --headless, one of --out,
+/// --depth, --report, or no display: as files.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Examples:\n  zga show teapot\n  zga show decal-compare --headless --out frames --frames 90\n  zga show spot.obj --out spot.png --depth spot-depth.png --report spot.json\n  zga show teapot --hidden-surface za --za-block 8x8 --za-prediction plane --report za.json\n  zga show za --view za --out za-words.png"

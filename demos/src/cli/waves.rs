@@ -27,7 +27,7 @@ const ELEMENTS: u32 = 16;
 /// the one in which the line's first token can enter. The file opens in GTKWave and Surfer.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Example:\n  zga waves systolic --line 40 --clocks 0..120 --pes 0..8 --out line.vcd\n  gtkwave line.vcd"
+    after_help = "Example:\n  zga waves systolic --line 40 --clocks 0..120 --pes 28..36 --out line.vcd\n  gtkwave line.vcd"
 )]
 pub(super) struct Waves {
     /// A demo, a scene file (.json) or a mesh (.obj, .gltf, .glb)
@@ -151,7 +151,7 @@ fn clocks(text: &str) -> std::result::Result<Range<u64>, String> {
     if from < to { Ok(from..to) } else { Err(format!("{from}..{to} is empty: expected A below B")) }
 }
 
-/// A range of elements, as in 0..8.
+/// A range of elements, as in 28..36.
 fn elements(text: &str) -> std::result::Result<Range<u32>, String> {
     let range = clocks(text)?;
     let number = |value: u64| u32::try_from(value).map_err(|_| format!("{value} is too large for an element"));
