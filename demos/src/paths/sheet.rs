@@ -194,11 +194,11 @@ fn panels(found: &Comparison, maps: &[Survey]) -> Vec<Panel> {
             });
         }
     }
-    if let Some(survey) = map("tokens") {
-        let free = free_tokens(whole.width, survey.units);
+    if let (Some(survey), Some(run)) = (map("tokens"), found.plain(HiddenSurface::Systolic)) {
+        let free = free_tokens(&run.case.settings, whole.width, survey.units);
         all.push(Panel {
             title: "systolic: tokens of the lines",
-            map: small(view::tokens(&whole, survey, times)),
+            map: small(view::tokens(&whole, survey, free, times)),
             notes: [
                 sum(survey, "tokens"),
                 format!("most {}; up to {free} hide behind the pixels on the bus", grouped(survey.most())),

@@ -14,7 +14,7 @@ use super::survey::{Survey, lines, tiles};
 use crate::canvas::{Canvas, Ink, heat};
 use crate::error::Result;
 use crate::picture::Picture;
-use crate::play::{Look, Session, ZaWords};
+use crate::play::{Look, Session, Settings, ZaWords};
 use crate::scene::Scene;
 
 /// Cleared blocks.
@@ -101,7 +101,10 @@ impl View {
         let maximum = session.settings().depth.maximum() as i32;
         Ok(match self {
             Self::Za => session.za_words()?.map_or(picture.clone(), |words| za(&picture, &words, maximum, 1)),
-            Self::Tokens => tokens(&picture, &lines(session, scene, look)?, 1),
+            Self::Tokens => {
+                let map = lines(session, scene, look)?;
+                tokens(&picture, &map, free_tokens(session.settings(), picture.width, map.units), 1)
+            }
             Self::Tiles => cells(&picture, &tiles(session, scene, look)?, 1),
         })
     }
@@ -136,11 +139,11 @@ pub(super) fn cells(picture: &Picture, map: &Survey, times: u32) -> Picture {
     canvas.into_picture()
 }
 
-/// A bar on each line, the longest three quarters of the picture; `times` as large.
-pub(super) fn tokens(picture: &Picture, map: &Survey, times: u32) -> Picture {
+/// A bar on each line, the longest three quarters of the picture, with a mark at `free` tokens; `times` as large.
+pub(super) fn tokens(picture: &Picture, map: &Survey, free: u64, times: u32) -> Picture {
     let width = picture.width * times;
     let room = f64::from(width) * 0.75;
-    let (most, free) = (map.most().max(1), free_tokens(picture.width, map.units));
+    let most = map.most().max(1);
     let length = |count: u64| (room * count as f64 / most as f64).round() as u32;
     let ink = |x: u32, y: u32| {
         let count = map.at(0, y / times);
@@ -158,9 +161,10 @@ pub(super) fn tokens(picture: &Picture, map: &Survey, times: u32) -> Picture {
 }
 
 /// The most tokens of `lines` lines of `width` pixels that do not make them any longer: a line takes the longer of
-/// its pixels on the bus and its tokens with the refresh token.
-pub(super) fn free_tokens(width: u32, lines: u32) -> u64 {
-    u64::from(lines) * (u64::from(width) / TOKEN_CLOCKS).saturating_sub(1)
+/// its pixels on the bus and its tokens with the refresh token. A Super Buffer takes in none meanwhile.
+pub(super) fn free_tokens(settings: &Settings, width: u32, lines: u32) -> u64 {
+    let of_a_line = if settings.systolic.super_buffer { 0 } else { u64::from(width) / TOKEN_CLOCKS };
+    u64::from(lines) * of_a_line.saturating_sub(1)
 }
 
 /// The picture in grey, `times` as large, with each pixel moved toward an ink as far as `ink` says.
@@ -201,6 +205,8 @@ pub(super) fn mix([from, to]: [Ink; 2], t: f64) -> Ink {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::paths::tests::settings;
+    use zga_driver::SystolicVariant;
 
     fn plain(width: u32, height: u32) -> Picture {
         Picture { width, height, rgb: vec![128; (width * height * 3) as usize] }
@@ -218,7 +224,7 @@ mod tests {
     #[test]
     fn tokens_bars_are_as_long_as_the_tokens() {
         let map = Survey { name: "", cell: [8, 1], units: 1, cells: [1, 2], values: vec![4, 2], whole: None };
-        let painted = tokens(&plain(8, 2), &map, 1);
+        let painted = tokens(&plain(8, 2), &map, 1, 1);
         let lit = |y: u32| (0..8).filter(|x| painted.at(*x, y).is_some_and(|[r, g, _]| r.max(g) > 110)).count();
         assert_eq!([lit(0), lit(1)], [6, 3]);
     }
@@ -226,6 +232,9 @@ mod tests {
     #[test]
     fn free_tokens_leave_room_for_the_refresh_token() {
         // 3 (31 + 1) = 96: tokens and refresh token take as long as the pixels.
-        assert_eq!((free_tokens(96, 1), free_tokens(2, 1)), (31, 0));
+        let array = settings();
+        assert_eq!((free_tokens(&array, 96, 1), free_tokens(&array, 2, 1)), (31, 0));
+        let systolic = SystolicVariant { super_buffer: true, ..array.systolic };
+        assert_eq!(free_tokens(&Settings { systolic, ..array }, 96, 1), 0);
     }
 }
