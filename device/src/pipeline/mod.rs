@@ -293,7 +293,7 @@ impl Pipeline {
         if fetch.indexed() {
             self.transform_shared(&fetch, &transform, account);
         }
-        let fast = self.level.filter(|_| probe.is_none() && path.is_fast());
+        let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity));
         let mut first = 0;
         while first < primitives {
             let assembler = Assembler {
@@ -464,11 +464,11 @@ enum Path {
 }
 
 impl Path {
-    /// Whether primitives are drawn from bins where the host can.
-    fn is_fast(&self) -> bool {
+    /// Whether primitives are drawn from bins where the host can: never where a unit is to be stepped.
+    fn is_fast(&self, fidelity: Fidelity) -> bool {
         match self {
             Path::ZBuffer => true,
-            Path::Za(draw) => draw.fast(),
+            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast(),
             Path::Sorted { held } => !held,
         }
     }
@@ -536,4 +536,36 @@ fn charge_geometry(counts: &GeometryCounts, draw: &Draw<'_>, account: &mut Accou
     account.add(Counter::GeometryDiscarded, counts.discarded);
     let clocks = 4 * vertices + set_up * counts.primitives + 4 * counts.cuts;
     account.charge(Counter::CyclesGeometry, Clocks(clocks));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hidden::za::{Background, Grid};
+    use zga_abi::format::{DepthFormat, PixelFormat, ZaPrediction};
+
+    #[test]
+    fn is_fast_of_a_clocked_za_unit_is_not() {
+        let pixels = Setting {
+            test: Some(DepthTest::LESS),
+            format: DepthFormat::default(),
+            interpolation: Interpolation::Flat,
+            scissor: Rectangle { x: 0, y: 0, right: 64, bottom: 64 },
+            width: 64,
+            pixel_format: PixelFormat::Xrgb8888,
+            colour_pitch: 64,
+            depth_pitch: 64,
+        };
+        // Blocks as published, which the functional model draws from bins.
+        let path = Path::Za(ZaDraw {
+            pixels,
+            grid: Grid { block: [32, 1], size: [64, 64] },
+            background: Background { pixel: 0, depth: 0 },
+            prediction: ZaPrediction::BlockLength,
+            bypass: true,
+            depth_buffer: true,
+        });
+        assert!(path.is_fast(Fidelity::Functional));
+        assert!(!path.is_fast(Fidelity::Clocked), "the state machine must be stepped whatever the kernel");
+    }
 }
