@@ -8,7 +8,7 @@ use zga_firmware::{Processor, ProcessorState};
 #[test]
 fn state_after_power_on_is_all_zero() {
     assert_eq!(Processor::new().state(), ProcessorState::default());
-    assert_eq!(Processor::default().state().to_words(), [0; 18]);
+    assert_eq!(Processor::default().state().to_words(), [0; 22]);
 }
 
 #[test]
