@@ -306,8 +306,8 @@ fn bad_scenes_name_file_and_field() {
     assert!(fault("a.json", "{").contains("a.json:1:"));
     let value = fault("b.json", &SCENE.replace("[16, 16, 32, 255]", "[16, 16, 32, 256]"));
     assert!(value.contains("b.json: background[3]: expected"), "{value}");
-    let path = fault("c.json", &SCENE.replace("\"depth_bits\": 16", "\"antialias\": \"8x8\""));
-    assert!(path.contains("c.json: card.antialias: 8x8 is not possible: this card has"), "{path}");
+    let field = fault("c.json", &SCENE.replace("\"depth_bits\": 16", "\"subpixel_pool\": 0"));
+    assert!(field.contains("c.json: card.subpixel_pool: expected a whole number in 1..=1048576"), "{field}");
     let mesh = fault("d.obj", "v 0 0 0\nf 1 2 3\n");
     assert!(mesh.contains("d.obj: line 2"), "{mesh}");
 }
