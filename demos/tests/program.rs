@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// A folder of its own for each test, removed when the test passes.
 struct Folder(PathBuf);
@@ -291,6 +291,66 @@ fn bench_takes_path_fidelity_and_depth_bits() {
         assert!(dump(&["--path", path]) == plain, "{path}");
         assert!(dump(&["--path", path, "--fidelity", "clocked", "--depth-bits", "16"]) == plain, "{path}, clocked");
     }
+}
+
+#[test]
+fn antialias_of_flags_goes_before_the_scene_and_stands_in_the_report() {
+    let folder = Folder::new("antialias");
+    let card = r#""depth_bits": 16, "antialias": "4x4", "subpixel_depth": "exhaustive", "subpixel_pool": 4096"#;
+    folder.write("scene.json", &SCENE.replace("\"depth_bits\": 16", card));
+    let draw = |flags: &[&str]| -> Value {
+        let run = folder.zga(&[&["show", "scene.json", "--out", "a.png", "--report", "a.json"], flags].concat());
+        assert_eq!(run.code(), Some(0), "{flags:?}: {}", run.err());
+        serde_json::from_slice(&folder.read("a.json")).expect("JSON")
+    };
+    let called = |report: &Value, what: &str, name: &str| {
+        report["effects"][what].as_array().expect("a list").contains(&name.into())
+    };
+    let scene = draw(&[]);
+    let set = |report: &Value| {
+        let fields = ["antialias", "subpixel_depth", "antialias_resolve", "subpixel_pool"];
+        Value::from(fields.map(|field| report["card"][field].clone()).to_vec())
+    };
+    assert_eq!(set(&scene), json!(["4x4", "exhaustive", "values", 4096]));
+    assert!(called(&scene, "called", "anti_alias") && called(&scene, "powered", "subpixel"));
+    let flags = draw(&["--antialias", "8x8", "--subpixel-depth", "centre", "--antialias-resolve", "linear"]);
+    assert_eq!(set(&flags), json!(["8x8", "centre", "linear", 4096]));
+    let off = draw(&["--antialias", "off"]);
+    assert_eq!((&off["card"]["antialias"], off["card"].get("subpixel_depth")), (&"off".into(), None));
+    assert!(!called(&off, "called", "anti_alias") && !called(&off, "powered", "subpixel"));
+}
+
+#[test]
+fn translucency_is_drawn_with_antialias_and_told_without() {
+    let folder = Folder::new("translucent");
+    let glass = SCENE
+        .replace("\"draw\": [\n", "\"materials\": {\"glass\": {\"blend\": \"alpha\"}}, \"draw\": [\n")
+        .replace("[[255,0,0,255]]", "[[255,0,0,128]], \"material\": \"glass\"");
+    folder.write("glass.json", &glass);
+    let plain = folder.zga(&["show", "glass.json", "--report", "a.json"]);
+    assert_eq!(plain.code(), Some(0), "{}", plain.err());
+    let told = "this card has no unit yet for materials.glass.blend (translucency needs antialias for now)";
+    assert!(plain.err().contains(told), "{}", plain.err());
+    let smooth = folder.zga(&["show", "glass.json", "--antialias", "4x4", "--report", "b.json"]);
+    assert_eq!((smooth.code(), smooth.err().contains("warning")), (Some(0), false), "{}", smooth.err());
+    let called = ["a.json", "b.json"].map(|file| {
+        let report: Value = serde_json::from_slice(&folder.read(file)).expect("JSON");
+        report["effects"]["called"].as_array().expect("a list").contains(&"blend".into())
+    });
+    assert_eq!(called, [false, true]);
+}
+
+#[test]
+fn bench_smooth_scene_tells_its_samples() {
+    let folder = Folder::new("bench-smooth");
+    let line = |flags: &[&str]| {
+        let run = folder.zga(&[&["bench", "S10", "--size", "64x64", "--secs", "0", "--peer", "zga-1"], flags].concat());
+        assert_eq!(run.code(), Some(0), "{flags:?}: {}", run.err());
+        run.out().split(',').take(4).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(line(&[]), ["zga-1", "S10", "64x64", "64"]);
+    assert_eq!(line(&["--antialias", "8x4"])[3], "32");
+    assert_eq!(line(&["--antialias", "off"])[3], "1");
 }
 
 #[test]
