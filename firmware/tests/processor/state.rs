@@ -37,6 +37,20 @@ fn from_state_in_a_scene_goes_on_where_it_was() {
 }
 
 #[test]
+fn from_state_in_a_scene_with_a_grid_has_its_grid() {
+    let mut bench = Bench::in_scene_with_grid();
+    let state = bench.processor.state();
+    assert_eq!(state.to_words()[18..], [3, 1, 0, 1 << 20]);
+    bench.card.set(0x0260, 0);
+    let restored = Processor::from_state(&bench.card, &state).expect("a good state");
+    assert_eq!(restored.target(), bench.processor.target());
+    let mut words = state.to_words();
+    words[21] = 0;
+    let refused = Processor::from_state(&bench.card, &ProcessorState::from_words(&words)).map(|_| ());
+    assert_eq!(refused, Err(Fault::new(FaultCode::BadValue, 0, 0x026C)));
+}
+
+#[test]
 fn from_state_of_a_scene_that_cannot_be_names_the_register() {
     let state = Bench::in_scene().processor.state();
     let mut small = Mock::new();
