@@ -9,9 +9,9 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use minifb::{InputCallback, Key, MouseButton, MouseMode, Window, WindowOptions};
-use zga_abi::format::{Fidelity, HiddenSurface};
+use zga_abi::format::{Fidelity, HiddenSurface, SubpixelGrid};
 use zga_abi::packet::Opcode;
-use zga_abi::{Counter, Reg};
+use zga_abi::{Counter, Effects, Reg};
 use zga_driver::CardInfo;
 
 use crate::error::{Error, Result};
@@ -28,8 +28,8 @@ const ZOOM_STEP: f64 = 0.92;
 /// Longest wait for a frame: scan-out gives one every 17 ms.
 const FRAME_WAIT: Duration = Duration::from_millis(50);
 /// What the keys do.
-const HELP: &str =
-    "drag: orbit, wheel: zoom, P path, F fidelity, V view, D decals, W wireframe, Space animation, S save, Esc end";
+const HELP: &str = "drag: orbit, wheel: zoom, P path, F fidelity, A anti-aliasing, V view, D decals, W wireframe, Space animation, S save, \
+     Esc end";
 
 /// A window for a picture of this size; none where there is no display.
 pub(crate) fn open(name: &str, size: [u32; 2]) -> Option<Window> {
@@ -213,6 +213,9 @@ impl Controls {
                     Fidelity::Clocked => Fidelity::Functional,
                 };
             }
+            Key::A if card.effects.contains(Effects::ANTI_ALIAS) => {
+                self.settings.antialias.grid = next_grid(self.settings.antialias.grid);
+            }
             Key::Space => self.animated = !self.animated,
             Key::V => self.view = !self.view,
             Key::H => self.help = !self.help,
@@ -239,15 +242,23 @@ impl Controls {
         }
         let path = self.settings.hidden_surface.name();
         let clocked = if self.settings.fidelity == Fidelity::Clocked { ", clocked" } else { "" };
+        let grid = self.settings.antialias.grid.name();
+        let grid = if self.settings.is_antialiased() { format!(", {grid} anti-aliased") } else { String::new() };
         let decals = if self.look.decals { "" } else { ", without decals" };
         let view = View::of(self.settings.hidden_surface).filter(|_| self.view);
         let view = view.map_or(String::new(), |view| format!(", view of {}", view.name()));
         let wires = if self.look.wireframe { ", wireframe" } else { "" };
         format!(
-            "ZGA: {name}, {path} path{clocked}{view}{decals}{wires}, {} clocks to draw (H for help)",
+            "ZGA: {name}, {path} path{clocked}{grid}{view}{decals}{wires}, {} clocks to draw (H for help)",
             grouped(clocks)
         )
     }
+}
+
+/// The grid after this one.
+fn next_grid(grid: SubpixelGrid) -> SubpixelGrid {
+    let place = SubpixelGrid::ALL.iter().position(|known| *known == grid).unwrap_or(0);
+    SubpixelGrid::ALL[(place + 1) % SubpixelGrid::ALL.len()]
 }
 
 /// The path after this one, among those that the card has.
@@ -261,9 +272,8 @@ fn next_path(path: HiddenSurface, card: &CardInfo) -> HiddenSurface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zga_abi::Effects;
     use zga_abi::format::DepthFormat;
-    use zga_driver::{SystolicVariant, ZaSettings};
+    use zga_driver::{Antialias, SystolicVariant, ZaSettings};
 
     fn start() -> Controls {
         let settings = Settings {
@@ -271,6 +281,7 @@ mod tests {
             fidelity: Fidelity::Functional,
             depth: DepthFormat::default(),
             subpixel_bits: 8,
+            antialias: Antialias { grid: SubpixelGrid::Off, ..Antialias::default() },
             za: ZaSettings::default(),
             systolic: SystolicVariant::default(),
             tile_size: [8, 8],
@@ -303,7 +314,7 @@ mod tests {
             bare.title("teapot", 5),
             "ZGA: teapot, zbuffer path, clocked, without decals, wireframe, 5 clocks to draw (H for help)"
         );
-        assert!(Controls { help: true, ..start() }.title("teapot", 5).contains("P path, F fidelity"));
+        assert!(Controls { help: true, ..start() }.title("teapot", 5).contains("P path, F fidelity, A anti-aliasing"));
     }
 
     #[test]
@@ -351,6 +362,21 @@ mod tests {
         assert_eq!(controls.settings.fidelity, Fidelity::Clocked);
         controls.press(Key::F, &card(0b0011));
         assert_eq!(controls.settings.fidelity, Fidelity::Functional);
+    }
+
+    #[test]
+    fn press_a_goes_round_the_grids_where_there_is_a_unit() {
+        let mut controls = start();
+        controls.press(Key::A, &card(0b0001));
+        assert!(!controls.settings.is_antialiased());
+        let unit = CardInfo { effects: Effects::DEPTH | Effects::ANTI_ALIAS, ..card(0b0001) };
+        let names = [(); 4].map(|()| {
+            controls.press(Key::A, &unit);
+            controls.settings.antialias.grid.name()
+        });
+        assert_eq!(names, ["4x4", "8x4", "8x8", "off"]);
+        controls.press(Key::A, &unit);
+        assert_eq!(controls.title("teapot", 5), "ZGA: teapot, zbuffer path, 4x4 anti-aliased, 5 clocks to draw (H for help)");
     }
 
     #[test]

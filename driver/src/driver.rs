@@ -297,7 +297,7 @@ impl<B: Bus> Driver<B> {
         opcode: Opcode,
         parts: &[&[u32]],
     ) -> Result<(), DriverError> {
-        if matches!(state, Err(DriverError::View(_) | DriverError::OutsideScene { .. })) {
+        if matches!(state, Err(DriverError::View(_) | DriverError::OutsideScene { .. } | DriverError::NoGrid { .. })) {
             return state;
         }
         self.adopt_recovered();

@@ -103,6 +103,12 @@ pub enum DriverError {
         /// The method called.
         call: &'static str,
     },
+    /// Translucency needs a scene whose pixels have samples.
+    #[error("{call} with blend in a scene without a sub-pixel grid: call set_antialias before begin_scene")]
+    NoGrid {
+        /// The method called.
+        call: &'static str,
+    },
     /// The target was made by another driver, or is gone.
     #[error("target {id} is not known to this driver")]
     UnknownTarget {

@@ -2,7 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`Driver`] | the card: opening, submission, fences, memory; scenes, state, hidden-surface paths, drawing, capture, probe |
+//! | [`Driver`] | the card: opening, submission, fences, memory; scenes, state, hidden-surface paths, anti-aliasing, drawing, capture, probe |
 //! | [`view`] | cameras and the decal transform |
 //! | [`memory`] | the video memory allocator |
 //! | [`bus`] | a bus model for tests, a bus that records |
@@ -51,6 +51,7 @@
 //! # }
 //! ```
 
+mod antialias;
 pub mod bus;
 mod capture;
 mod draw;
@@ -67,6 +68,7 @@ pub mod trace;
 pub mod view;
 mod warning;
 
+pub use antialias::Antialias;
 pub use capture::{Frame, frame_hash, hash_text};
 pub use draw::{Curve, MeshBuffer, Vertex};
 pub use driver::{Driver, DriverOptions};

@@ -6,6 +6,7 @@ use zga_abi::bus::Bus;
 use zga_abi::format::DepthFunction;
 use zga_abi::registers::Reg;
 
+use crate::antialias::AntialiasState;
 use crate::hidden::HiddenState;
 use crate::view::{Camera, Decal, Matrix, camera, finite};
 use crate::{DecalInfo, Driver, DriverError, Target, Warning};
@@ -37,6 +38,7 @@ pub(crate) struct State {
     pub depth_function: DepthFunction,
     pub depth_write: bool,
     pub hidden: HiddenState,
+    pub antialias: AntialiasState,
     pub subpixel_bits: u32,
     pub scissor: [u32; 2],
     pub material: u32,
@@ -56,6 +58,7 @@ impl State {
             depth_function: DepthFunction::Less,
             depth_write: true,
             hidden: HiddenState::new(),
+            antialias: AntialiasState::new(),
             subpixel_bits: 8,
             scissor: NO_SCISSOR,
             material: u32::MAX,
@@ -198,10 +201,10 @@ impl<B: Bus> Driver<B> {
         let scene = self.open_scene(call)?;
         let (width, height, depth) = (scene.width, scene.height, scene.depth);
         self.compose_matrices(width, height, depth)?;
+        let mut effects = self.want_masks(call, &scene)?;
         let state = &self.state;
         let tests_depth = depth.is_some() && (state.depth_function != DepthFunction::Always || state.depth_write);
         let begins_far = tests_depth && !scene.depth_known;
-        let mut effects = Effects::empty();
         effects.set(Effects::DEPTH, tests_depth);
         effects.set(Effects::GOURAUD, gouraud);
         effects.set(Effects::PERSPECTIVE, gouraud && state.camera.is_perspective());

@@ -89,6 +89,8 @@ pub(crate) struct Scene {
     pub height: u32,
     pub depth: Option<DepthFormat>,
     pub path: HiddenSurface,
+    /// Its pixels have samples.
+    pub grid: bool,
     /// It has a Z buffer, or all depth was cleared in it.
     pub depth_known: bool,
     /// Its begin was refused: nothing can be drawn until it ends.
@@ -200,11 +202,13 @@ impl<B: Bus> Driver<B> {
             self.registers.want(Reg::DepthFormat, &[format.code()]);
         }
         self.registers.want(Reg::SubpixelBits, &[self.state.subpixel_bits]);
+        let grid = self.want_antialias();
         if self.state.composed_for != (width, height) {
             self.state.composed_for = (width, height);
             self.state.matrices_changed();
         }
-        self.scene = Some(Scene { id: target.id, width, height, depth, path, depth_known: uses_z_buffer, lost: false });
+        self.scene =
+            Some(Scene { id: target.id, width, height, depth, path, grid, depth_known: uses_z_buffer, lost: false });
         let registers = self.send_registers();
         registers.and(self.encode(Opcode::BeginScene, &[]))
     }

@@ -9,7 +9,8 @@ use zga_abi::{Bus, Counter, Effects, FaultCode, Units};
 use zga_device::{Card, CardBus, CardOptions};
 use zga_driver::bus::RecordingBus;
 use zga_driver::{
-    Camera, Curve, Driver, DriverError, DriverOptions, Frame, Rectangle, Submit, Target, TargetOptions, Vertex, trace,
+    Antialias, Camera, Curve, Driver, DriverError, DriverOptions, Frame, Rectangle, Submit, Target, TargetOptions,
+    Vertex, trace,
 };
 
 const RED: [u8; 4] = [255, 0, 0, 255];
@@ -52,6 +53,25 @@ fn plain_frame<B: Bus>(driver: &mut Driver<B>) -> Frame {
     let target = driver.create_target(TargetOptions::new(64, 48)).expect("room");
     draw_scene(driver, &target, |_| Ok(())).expect("draws");
     driver.capture().expect("captures")
+}
+
+#[test]
+fn antialias_and_blend_power_the_sub_pixel_unit_while_they_are_called_for() {
+    let card = card();
+    let mut driver = open(&card, Submit::Ring);
+    let target = driver.create_target(TargetOptions::new(64, 48)).expect("room");
+    let mut called = |setting: Option<Antialias>, blend: bool| {
+        driver.set_antialias(setting).expect("there");
+        driver.set_blend(blend).expect("there");
+        draw_scene(&mut driver, &target, |_| Ok(())).expect("draws");
+        driver.finish().expect("the card takes it");
+        (driver.effects_called(), driver.units_powered().contains(Units::SUBPIXEL))
+    };
+    let plain = Effects::DEPTH | Effects::GOURAUD | Effects::DECAL;
+    assert_eq!(called(None, false), (plain, false));
+    assert_eq!(called(Some(Antialias::default()), false), (plain | Effects::ANTI_ALIAS, true));
+    assert_eq!(called(Some(Antialias::default()), true), (plain | Effects::ANTI_ALIAS | Effects::BLEND, true));
+    assert_eq!(called(None, false), (plain, false));
 }
 
 #[test]

@@ -6,8 +6,8 @@
 use core::ops::Range;
 use zga_abi::Effects;
 use zga_abi::format::{
-    DepthFormat, DepthFunction, EndTest, Fidelity, HiddenSurface, PixelFormat, TokenColour, TokenPorts, Topology,
-    ZaPrediction,
+    DepthFormat, DepthFunction, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid,
+    SubpixelResolve, TokenColour, TokenPorts, Topology, ZaPrediction,
 };
 
 /// A rectangle of pixels: `x`, `y` inclusive, `right`, `bottom` exclusive.
@@ -88,6 +88,8 @@ pub struct Target {
     pub systolic: SystolicSetting,
     /// Width and height of a tile of the tile unit, pixels: 4, 8, 16, 32 or 64.
     pub tile: [u32; 2],
+    /// Sub-pixel mask unit; none where SUBPIXEL_GRID is off. Only with one do draws call for ANTI_ALIAS or BLEND.
+    pub subpixel: Option<SubpixelSetting>,
 }
 
 impl Target {
@@ -156,10 +158,24 @@ impl Default for SystolicSetting {
     }
 }
 
+/// The sub-pixel mask unit's registers, where there is a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SubpixelSetting {
+    /// Samples of a pixel; never [`SubpixelGrid::Off`].
+    pub grid: SubpixelGrid,
+    /// How fragments that share samples are ordered.
+    pub depth: SubpixelDepth,
+    /// Space in which samples are averaged.
+    pub resolve: SubpixelResolve,
+    /// Fragments that the lists of one line of pixels have room for, 1..=2^20.
+    pub pool: u32,
+}
+
 /// State of one draw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawState {
-    /// Effects called; DEPTH only where the target has a Z buffer or the path needs none.
+    /// Effects called; DEPTH only where the target has a Z buffer or the path needs none, ANTI_ALIAS and
+    /// BLEND only where the target has a grid.
     pub effects: Effects,
     /// Depth test.
     pub depth_function: DepthFunction,
@@ -171,6 +187,10 @@ pub struct DrawState {
     pub tag: u32,
     /// Pixels that may change: the scissor cut to the target; can be empty.
     pub scissor: Rectangle,
+    /// Width of lines drawn with ANTI_ALIAS: u8.8, pixels, 1..=0xFFFF.
+    pub line_width: u32,
+    /// Side of points drawn with ANTI_ALIAS: u8.8, pixels, 1..=0xFFFF.
+    pub point_size: u32,
 }
 
 /// A run of words, in the packet or in video memory.

@@ -34,6 +34,8 @@ pub struct Measured {
     pub number: u32,
     /// Pixels of a row, and rows.
     pub size: [u32; 2],
+    /// Samples of a pixel.
+    pub samples: u32,
     /// Seconds of each frame, rising; never empty.
     times: Vec<f64>,
     /// Nominal pixels.
@@ -69,8 +71,9 @@ impl Measured {
     pub fn csv(&self, peer: &str) -> String {
         let ([least, median, p90], [pixels, primitives]) = (self.milliseconds(), self.rates());
         let ([width, height], number, frames, prims) = (self.size, self.number, self.frames(), self.primitives);
+        let samples = self.samples;
         format!(
-            "{peer},S{number},{width}x{height},1,{frames},{median:.4},{least:.4},{p90:.4},{pixels:.1},{primitives:.3},{prims}"
+            "{peer},S{number},{width}x{height},{samples},{frames},{median:.4},{least:.4},{p90:.4},{pixels:.1},{primitives:.3},{prims}"
         )
     }
 }
@@ -82,6 +85,7 @@ pub struct Bench {
     driver: Driver<CardBus>,
     target: Target,
     mesh: MeshBuffer,
+    samples: u32,
     frames: u8,
     // Last: the driver goes before its card.
     _card: Card,
@@ -104,7 +108,9 @@ impl Bench {
         let card = Card::power_on(CardOptions { video_memory, za_ram, threads, kernel })
             .map_err(|reason| Error::Card { place: name.clone(), reason })?;
         let mut driver = Driver::open(card.bus()).map_err(fault())?;
-        let settings = Settings::resolve(&name, &CardSettings::default(), asked, size, driver.card_info())?;
+        // What is asked for goes before the scene's own.
+        let own = CardSettings { antialias: scene.antialias(), ..CardSettings::default() };
+        let settings = Settings::resolve(&name, &own, asked, size, driver.card_info())?;
         settings.apply(&mut driver).map_err(fault())?;
         // A frame begins with a clear of everything, and nobody reads its depths.
         driver.set_keep_depth(false);
@@ -113,7 +119,8 @@ impl Bench {
         let vertices: Vec<Vertex> = scene.corners.iter().map(vertex).collect();
         let topology = if scene.lines { Topology::Lines } else { Topology::Triangles };
         let mesh = driver.upload_mesh(topology, &vertices, None).map_err(fault())?;
-        Ok(Bench { scene, driver, target, mesh, frames: 0, _card: card })
+        let samples = settings.antialias.grid.samples();
+        Ok(Bench { scene, driver, target, mesh, samples, frames: 0, _card: card })
     }
 
     /// Draws a frame and waits for its fence.
@@ -149,7 +156,7 @@ impl Bench {
         }
         times.sort_by(f64::total_cmp);
         let BenchScene { number, width, height, pixels, primitives, .. } = self.scene;
-        Ok(Measured { number, size: [width, height], times, pixels, primitives })
+        Ok(Measured { number, size: [width, height], samples: self.samples, times, pixels, primitives })
     }
 
     /// The picture: "RGBA width height" and a line end, then 4 bytes a pixel.
@@ -182,11 +189,12 @@ mod tests {
         let measured = Measured {
             number: 5,
             size: [1024, 768],
+            samples: 64,
             times: vec![0.002, 0.004, 0.005],
             pixels: 8e6,
             primitives: 20_000,
         };
-        assert_eq!(measured.csv("zga-1"), "zga-1,S5,1024x768,1,3,4.0000,2.0000,5.0000,2000.0,5.000,20000");
+        assert_eq!(measured.csv("zga-1"), "zga-1,S5,1024x768,64,3,4.0000,2.0000,5.0000,2000.0,5.000,20000");
     }
 
     #[test]
@@ -196,6 +204,7 @@ mod tests {
             let mut bench = Bench::new(scene, &Asked { threads: 1, ..Asked::default() }).expect("a card");
             let measured = bench.measure(0.0).expect("drawn");
             assert!(measured.frames() >= 3);
+            assert_eq!(measured.samples, if number == 10 { 64 } else { 1 });
             let dump = bench.dump().expect("captured");
             assert!(dump.starts_with(b"RGBA 320 320\n"));
             let pixels = dump[13..].as_chunks::<4>().0;

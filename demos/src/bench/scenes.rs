@@ -3,6 +3,8 @@
 //! Scene k draws from PCG32 with the seed 0x5EED0000 + k and the stream k. All arithmetic is on integers; division
 //! truncates toward zero. The check hashes in the tests are those of the definition.
 
+use crate::scene::SubpixelGrid;
+
 /// PCG-XSH-RR 64/32 with the reference seeding.
 struct Pcg32 {
     state: u64,
@@ -52,7 +54,7 @@ pub struct Corner {
 /// A benchmark scene.
 #[derive(Clone, Debug)]
 pub struct BenchScene {
-    /// Its number, 1..=7.
+    /// Its number, one of [`SCENES`].
     pub number: u32,
     /// Pixels of a row.
     pub width: u32,
@@ -69,7 +71,7 @@ pub struct BenchScene {
 }
 
 /// Numbers, names and descriptions of the scenes there are.
-pub const SCENES: [(u32, &str, &str); 7] = [
+pub const SCENES: [(u32, &str, &str); 8] = [
     (1, "clear", "only the clear; its red value changes every frame"),
     (2, "fill far", "64 layers from far to near: every pixel passes"),
     (3, "fill hidden", "64 layers from near to far: all but the first are hidden"),
@@ -77,6 +79,7 @@ pub const SCENES: [(u32, &str, &str); 7] = [
     (5, "medium", "20 000 triangles of about 400 pixels"),
     (6, "slivers", "20 000 triangles, 300 pixels long and 0.75 wide"),
     (7, "lines", "100 000 lines of about 60 pixels"),
+    (10, "smooth", "S5 anti-aliased"),
 ];
 
 type Triangle = [[i32; 2]; 3];
@@ -132,21 +135,23 @@ impl BenchScene {
     /// too small for its primitives.
     #[must_use]
     pub fn new(number: u32, width: u32, height: u32) -> Option<Self> {
+        // S10 is S5, drawn with samples.
+        let drawn = if number == 10 { 5 } else { number };
         // The least side that the boxes and segments fit into, with room to spare.
-        let least = [1, 1, 1, 9, 49, 320, 80].get(number.checked_sub(1)? as usize).copied()?;
+        let least = [1, 1, 1, 9, 49, 320, 80].get(drawn.checked_sub(1)? as usize).copied()?;
         if width.min(height) < least || width.max(height) > crate::limits::MAX_TARGET_PIXELS_PER_SIDE {
             return None;
         }
-        let primitives = [0, 128, 128, 200_000, 20_000, 20_000, 100_000][number as usize - 1];
-        let lines = number == 7;
+        let primitives = [0, 128, 128, 200_000, 20_000, 20_000, 100_000][drawn as usize - 1];
+        let lines = drawn == 7;
         let each = if lines { 2 } else { 3 };
         let mut corners = vec![Corner::default(); primitives * each];
-        let mut generator = Pcg32::new(0x5EED_0000 + u64::from(number), u64::from(number));
+        let mut generator = Pcg32::new(0x5EED_0000 + u64::from(drawn), u64::from(drawn));
         let size = [width as i32, height as i32];
-        match number {
-            2 | 3 => layers(&mut generator, &mut corners, size, number == 2),
+        match drawn {
+            2 | 3 => layers(&mut generator, &mut corners, size, drawn == 2),
             4 | 5 => {
-                let (side, area) = if number == 4 { (8, [17, 27]) } else { (48, [300, 500]) };
+                let (side, area) = if drawn == 4 { (8, [17, 27]) } else { (48, [300, 500]) };
                 for corners in corners.chunks_exact_mut(3) {
                     let left = generator.below((width - side) * 256 + 1);
                     let top = generator.below((height - side) * 256 + 1);
@@ -172,12 +177,18 @@ impl BenchScene {
             }
             _ => {}
         }
-        let pixels = match number {
+        let pixels = match drawn {
             1 => f64::from(width) * f64::from(height),
             7 => corners.chunks_exact(2).map(longer_side).sum(),
             _ => corners.chunks_exact(3).map(area).sum(),
         };
         Some(Self { number, width, height, lines, primitives, corners, pixels })
+    }
+
+    /// Samples of a pixel that the scene is drawn with where nothing is asked for.
+    #[must_use]
+    pub fn antialias(&self) -> Option<SubpixelGrid> {
+        (self.number == 10).then_some(SubpixelGrid::Grid8x8)
     }
 
     /// FNV-1a over all corners, the check value of the definition (texture coordinates count as 0).
@@ -237,6 +248,7 @@ mod tests {
         check(5, 20_000, 7_630_619.8, 0x43CC_9361_AFC1_97DA);
         check(6, 20_000, 2_244_101.3, 0xE402_024E_D899_D382);
         check(7, 100_000, 5_418_301.7, 0xC77F_E174_0600_731C);
+        check(10, 20_000, 7_630_619.8, 0x43CC_9361_AFC1_97DA);
     }
 
     #[test]

@@ -7,8 +7,9 @@ use zga_device::Kernel;
 use crate::limits::MAX_TARGET_PIXELS_PER_SIDE;
 use crate::play::{Asked, KERNELS, Look};
 use crate::scene::{
-    Antialias, CardSettings, END_TESTS, FIDELITIES, Fidelity, HIDDEN_SURFACES, HiddenSurface, SystolicSettings,
-    TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS, ZaPrediction,
+    ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, Fidelity, HIDDEN_SURFACES, HiddenSurface,
+    MOST_SUBPIXEL_POOL, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelGrid, SubpixelResolve, SystolicSettings, TILE_SIDES,
+    TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS, ZaPrediction,
 };
 
 /// What is asked of the card.
@@ -27,9 +28,6 @@ pub(super) struct CardFlags {
     /// Path that decides what is hidden
     #[arg(long, alias = "path", value_name = "PATH", value_parser = named(&HIDDEN_SURFACES))]
     pub hidden_surface: Option<HiddenSurface>,
-    /// Sub-pixels of a pixel
-    #[arg(long, value_name = "GRID", value_parser = named(Antialias::NAMED))]
-    pub antialias: Option<Antialias>,
     /// Bits of a pixel that coordinates are snapped to
     #[arg(long, value_name = "N", value_parser = number(["4", "8"]))]
     pub subpixel_bits: Option<u32>,
@@ -45,11 +43,7 @@ impl CardFlags {
             threads: self.threads,
             kernel: self.kernel,
             subpixel_bits: self.subpixel_bits,
-            card: CardSettings {
-                hidden_surface: self.hidden_surface,
-                antialias: self.antialias,
-                ..self.units.settings()
-            },
+            card: CardSettings { hidden_surface: self.hidden_surface, ..self.units.settings() },
         }
     }
 }
@@ -67,6 +61,18 @@ pub(super) struct UnitFlags {
     /// Fraction bits of a depth gradient
     #[arg(long, value_name = "N", value_parser = number(["0", "8", "16", "24"]))]
     depth_fraction_bits: Option<u32>,
+    /// Anti-aliasing: samples of a pixel, columns x rows
+    #[arg(long, value_name = "GRID", value_parser = named(&ANTIALIAS_GRIDS))]
+    antialias: Option<SubpixelGrid>,
+    /// anti-aliasing: how fragments of a pixel that share samples are ordered; exhaustive is supersampling
+    #[arg(long, value_name = "MODE", value_parser = named(&SUBPIXEL_DEPTHS))]
+    subpixel_depth: Option<SubpixelDepth>,
+    /// anti-aliasing: average the frame buffer's values, or linear light
+    #[arg(long, value_name = "SPACE", value_parser = named(&ANTIALIAS_RESOLVES))]
+    antialias_resolve: Option<SubpixelResolve>,
+    /// anti-aliasing: fragments that the lists of a line of pixels have room for; pixels that find none keep one sample
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SUBPIXEL_POOL)))]
+    subpixel_pool: Option<u32>,
     /// za: block of pixels that shares a status word, for example 8x8
     #[arg(long, value_name = "WxH", value_parser = size)]
     za_block: Option<[u32; 2]>,
@@ -89,6 +95,10 @@ impl UnitFlags {
     pub(super) fn settings(&self) -> CardSettings {
         CardSettings {
             fidelity: self.fidelity,
+            antialias: self.antialias,
+            subpixel_depth: self.subpixel_depth,
+            antialias_resolve: self.antialias_resolve,
+            subpixel_pool: self.subpixel_pool,
             depth_bits: self.depth_bits,
             depth_fraction_bits: self.depth_fraction_bits,
             za_block: self.za_block,

@@ -17,7 +17,7 @@ use crate::table::{columns, row};
 use crate::window;
 
 pub(super) fn run() -> Result<Verdict> {
-    let source = Source::open(DEMOS[0].name, None)?;
+    let source = Source::open(DEMOS[0].name, None, None)?;
     let scene = source.scene(0);
     let asked = Asked::default();
     let window = window::open(&source.name, scene.size);

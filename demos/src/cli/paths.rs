@@ -77,7 +77,7 @@ impl Paths {
         let card = CardSettings { hidden_surface: Some(HiddenSurface::ZBuffer), ..units };
         let Self { size, threads, kernel, .. } = *self;
         let asked = Asked { size, threads, kernel, subpixel_bits: None, card };
-        let source = Source::open(&self.what, size)?;
+        let source = Source::open(&self.what, size, card.antialias)?;
         let scene = Scene {
             card: CardSettings { fidelity: None, ..source.scene(self.frame).card },
             ..source.scene(self.frame)

@@ -19,12 +19,12 @@ pub(super) const FOLDER: &str = "zga-out";
 
 /// Show a demo, a scene file or a mesh
 ///
-/// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, V what the path knows, D decals, W wireframe,
-/// Space animation, S saves a picture, H help, Esc ends; the title tells path and clocks. With --headless, one of --out,
-/// --depth, --report, or no display: as files.
+/// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, A the next grid of samples, V what the path
+/// knows, D decals, W wireframe, Space animation, S saves a picture, H help, Esc ends; the title tells path,
+/// anti-aliasing and clocks. With --headless, one of --out, --depth, --report, or no display: as files.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Examples:\n  zga show teapot\n  zga show decal-compare --headless --out frames --frames 90\n  zga show spot.obj --out spot.png --depth spot-depth.png --report spot.json\n  zga show teapot --hidden-surface za --za-block 8x8 --za-prediction plane --report za.json\n  zga show za --view za --out za-words.png"
+    after_help = "Examples:\n  zga show teapot\n  zga show decal-compare --headless --out frames --frames 90\n  zga show spot.obj --out spot.png --depth spot-depth.png --report spot.json\n  zga show teapot --hidden-surface za --za-block 8x8 --za-prediction plane --report za.json\n  zga show za --view za --out za-words.png\n  zga show wireframe --antialias 8x8 --out smooth.png"
 )]
 pub(super) struct Show {
     /// A demo, a scene file (.json) or a mesh (.obj, .gltf, .glb)
@@ -63,7 +63,7 @@ impl Show {
             return Err(Error::Use(format!("--out {path} is one file, but --frames asks for {frames}: name a folder")));
         }
         let asked = viewed(self.card.asked(), self.view)?;
-        let source = Source::open(&self.what, asked.size)?;
+        let source = Source::open(&self.what, asked.size, asked.card.antialias)?;
         let wants_files = self.headless || self.out.is_some() || self.depth.is_some() || self.report.is_some();
         if !wants_files && show_window(&source, &asked, self.look, self.view.is_some())? {
             return Ok(Verdict::Good);

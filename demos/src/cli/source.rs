@@ -6,7 +6,7 @@ use super::note;
 use crate::demos::{self, Demo};
 use crate::error::{Error, Result};
 use crate::mesh;
-use crate::scene::{self, Scene};
+use crate::scene::{self, Scene, SubpixelGrid};
 
 /// Size of the picture of a mesh, in pixels, where nothing is asked for.
 const MESH_SIZE: [u32; 2] = [800, 600];
@@ -31,11 +31,11 @@ enum Kind {
 }
 
 impl Source {
-    /// A demonstration of this name, or else the file; `size` goes before the scene's own.
+    /// A demonstration of this name, or else the file; `size` and `antialias` go before the scene's own.
     ///
     /// # Errors
     /// [`Error::Use`] for what is neither; what is wrong with the file.
-    pub(super) fn open(text: &str, size: Option<[u32; 2]>) -> Result<Self> {
+    pub(super) fn open(text: &str, size: Option<[u32; 2]>, antialias: Option<SubpixelGrid>) -> Result<Self> {
         let (name, file) = (text.to_owned(), Path::new(text));
         if let Some(demo) = demos::find(text) {
             return Ok(Self { name, stem: text.to_owned(), size, kind: Kind::Demo(demo) });
@@ -52,7 +52,8 @@ impl Source {
         for line in scene.warnings() {
             note(&format!("warning: {line}"));
         }
-        let beyond = scene.unsupported_effects();
+        let grid = antialias.or(scene.card.antialias).unwrap_or(SubpixelGrid::Off);
+        let beyond = scene.unsupported_effects(grid);
         if !beyond.is_empty() {
             let beyond = beyond.join(", ");
             note(&format!("warning: {name}: this card has no unit yet for {beyond}; drawn without"));
@@ -88,14 +89,16 @@ mod tests {
 
     #[test]
     fn open_unknown_name_says_what_there_is() {
-        let fault = Source::open("no-such-demo", None).expect_err("unknown").to_string();
+        let fault = Source::open("no-such-demo", None, None).expect_err("unknown").to_string();
         assert!(fault.starts_with("no-such-demo: neither a demo (see zga list)"), "{fault}");
-        assert!(Source::open("missing.json", None).expect_err("no file").to_string().starts_with("missing.json: "));
+        assert!(
+            Source::open("missing.json", None, None).expect_err("no file").to_string().starts_with("missing.json: ")
+        );
     }
 
     #[test]
     fn scene_size_of_the_command_line_goes_first() {
-        let source = Source::open("teapot", Some([320, 200])).expect("known");
+        let source = Source::open("teapot", Some([320, 200]), None).expect("known");
         assert_eq!(source.scene(3).size, [320, 200]);
         assert_eq!(
             (source.file_name(0, 1, "png"), source.file_name(7, 9, "png")),

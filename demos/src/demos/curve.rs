@@ -57,6 +57,7 @@ fn cubic(points: Vec<[f32; 3]>, colour: Colour) -> Draw {
         points,
         colours: Colours::One(colour),
         tolerance: 0.1,
+        width: None,
         material: None,
         tag: None,
     })

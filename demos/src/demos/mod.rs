@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn demos_call_for_no_effect_beyond_colours_and_decals() {
-        assert!(DEMOS.iter().all(|demo| demo.build(0).unsupported_effects().is_empty()));
+        assert!(DEMOS.iter().all(|demo| demo.build(0).unsupported_effects(crate::scene::SubpixelGrid::Off).is_empty()));
     }
 
     #[test]

@@ -172,8 +172,8 @@ mod tests {
     use crate::demos;
     use crate::play::Asked;
     use zga_abi::Effects;
-    use zga_abi::format::DepthFormat;
-    use zga_driver::{CardInfo, SystolicVariant, ZaSettings};
+    use zga_abi::format::{DepthFormat, SubpixelGrid};
+    use zga_driver::{Antialias, CardInfo, SystolicVariant, ZaSettings};
 
     pub(super) const ALL_PATHS: CardInfo = CardInfo {
         major: 1,
@@ -191,6 +191,7 @@ mod tests {
             fidelity: Fidelity::Functional,
             depth: DepthFormat::default(),
             subpixel_bits: 8,
+            antialias: Antialias { grid: SubpixelGrid::Off, ..Antialias::default() },
             za: ZaSettings::default(),
             systolic: SystolicVariant::default(),
             tile_size: [8, 8],

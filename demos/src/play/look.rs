@@ -60,6 +60,7 @@ fn wires(mut batch: Batch, background: Colour) -> Vec<Batch> {
         ..batch.clone()
     };
     batch.colours.fill(background);
+    batch.translucent = false;
     vec![batch, edges]
 }
 

@@ -5,8 +5,8 @@ mod survey;
 use std::io::Write;
 use std::time::Instant;
 
-use zga_abi::Bus;
 use zga_abi::format;
+use zga_abi::{Bus, Effects};
 use zga_device::{Card, CardBus, CardOptions, Monitor};
 use zga_driver::bus::RecordingBus;
 use zga_driver::{Camera, Driver, DriverError, Frame, MeshBuffer, Rectangle, Target, TargetOptions, Vertex};
@@ -225,7 +225,9 @@ impl<B: Bus> Session<B> {
 
     /// Draws what is in video memory, all of it or what lies inside `cut`; the clear is of everything.
     fn encode(&mut self, (from, background): (scene::Camera, Colour), cut: Option<Rectangle>) -> Result<()> {
-        let Self { name, driver, target, meshes, drawn, .. } = self;
+        let Self { name, driver, target, meshes, drawn, settings, .. } = self;
+        let masks = settings.is_antialiased();
+        let layers = masks && driver.card_info().effects.contains(Effects::BLEND);
         let fault = || Error::driver(name.as_str());
         drawn.clear();
         driver.set_camera(camera(&from)).map_err(fault())?;
@@ -240,6 +242,11 @@ impl<B: Bus> Session<B> {
             let place = || Error::driver(format!("{name}: {}", batch.path));
             driver.set_object_transform(&batch.transform).map_err(place())?;
             driver.set_tag(batch.tag);
+            if masks {
+                driver.set_line_width(batch.extent.into()).map_err(place())?;
+                driver.set_point_size(batch.extent.into()).map_err(place())?;
+            }
+            driver.set_blend(layers && batch.translucent).map_err(place())?;
             match batch.slope {
                 Some(slope) => driver.decal(slope.into(), |driver| driver.draw_mesh(mesh)),
                 None => driver.draw_mesh(mesh),

@@ -5,13 +5,13 @@
 //! [`CardInfo`]. Outputs to: [`super::Session`], [`crate::bench`], reports.
 
 use serde_json::{Value, json};
-use zga_abi::format::{DepthFormat, Fidelity, HiddenSurface};
+use zga_abi::format::{DepthFormat, Fidelity, HiddenSurface, SubpixelGrid};
 use zga_abi::{Bus, Effects};
 use zga_device::Kernel;
-use zga_driver::{CardInfo, Driver, DriverError, SystolicVariant, ZaSettings};
+use zga_driver::{Antialias, CardInfo, Driver, DriverError, SystolicVariant, ZaSettings};
 
 use crate::error::{Error, Result};
-use crate::scene::{Antialias, CardSettings};
+use crate::scene::CardSettings;
 
 /// Pixel kernels by name.
 pub const KERNELS: [(&str, Kernel); 6] = [
@@ -52,6 +52,8 @@ pub struct Settings {
     pub depth: DepthFormat,
     /// Bits of a pixel that coordinates are snapped to.
     pub subpixel_bits: u32,
+    /// Anti-aliasing; off where its grid is.
+    pub antialias: Antialias,
     /// The Za unit.
     pub za: ZaSettings,
     /// The systolic array.
@@ -111,10 +113,16 @@ impl Settings {
             let has = "this card has functional; none of its units has a clocked model".to_owned();
             return refused(flags.fidelity.is_some(), "fidelity", fidelity.name().to_owned(), has);
         }
-        let antialias = card.antialias.unwrap_or(Antialias::Off);
-        if antialias != Antialias::Off && !info.effects.contains(Effects::ANTI_ALIAS) {
+        let plain = Antialias::default();
+        let antialias = Antialias {
+            grid: card.antialias.unwrap_or(SubpixelGrid::Off),
+            depth: card.subpixel_depth.unwrap_or(plain.depth),
+            resolve: card.antialias_resolve.unwrap_or(plain.resolve),
+            pool: card.subpixel_pool.unwrap_or(plain.pool),
+        };
+        if antialias.grid != SubpixelGrid::Off && !info.effects.contains(Effects::ANTI_ALIAS) {
             let has = "this card has off; it has no sub-pixel unit".to_owned();
-            return refused(flags.antialias.is_some(), "antialias", antialias.name().to_owned(), has);
+            return refused(flags.antialias.is_some(), "antialias", antialias.grid.name().to_owned(), has);
         }
         let plain = DepthFormat::default();
         let bits = card.depth_bits.unwrap_or(plain.bits());
@@ -147,7 +155,7 @@ impl Settings {
         };
         let tile_size = card.tile_size.unwrap_or([8, 8]);
         let subpixel_bits = asked.subpixel_bits.unwrap_or(8);
-        Ok(Self { hidden_surface, fidelity, depth, subpixel_bits, za, systolic, tile_size })
+        Ok(Self { hidden_surface, fidelity, depth, subpixel_bits, antialias, za, systolic, tile_size })
     }
 
     /// Sets a driver up, all but the depth format: that is the target's.
@@ -158,15 +166,31 @@ impl Settings {
         driver.set_hidden_surface(self.hidden_surface)?;
         driver.set_fidelity(self.fidelity)?;
         driver.set_subpixel_bits(self.subpixel_bits)?;
+        driver.set_antialias(Some(self.antialias))?;
         driver.set_za(self.za)?;
         driver.set_systolic(self.systolic);
         driver.set_tile_size(self.tile_size)
     }
 
-    /// The settings that the path in use depends on, named as in a scene's `card`.
+    /// Pixels have samples.
+    #[must_use]
+    pub fn is_antialiased(&self) -> bool {
+        self.antialias.grid != SubpixelGrid::Off
+    }
+
+    /// The settings that the path in use and anti-aliasing depend on, named as in a scene's `card`.
     #[must_use]
     pub fn report(&self) -> Value {
-        let mut card = json!({ "depth_bits": self.depth.bits(), "depth_fraction_bits": self.depth.fraction() });
+        let mut card = json!({
+            "depth_bits": self.depth.bits(),
+            "depth_fraction_bits": self.depth.fraction(),
+            "antialias": self.antialias.grid.name(),
+        });
+        if self.is_antialiased() {
+            card["subpixel_depth"] = self.antialias.depth.name().into();
+            card["antialias_resolve"] = self.antialias.resolve.name().into();
+            card["subpixel_pool"] = self.antialias.pool.into();
+        }
         match self.hidden_surface {
             HiddenSurface::ZBuffer => {}
             HiddenSurface::Za => {
@@ -192,7 +216,7 @@ impl Settings {
 mod tests {
     use super::*;
     use crate::scene::{SystolicSettings, ZaPrediction};
-    use zga_abi::format::{EndTest, TokenColour, TokenPorts};
+    use zga_abi::format::{EndTest, SubpixelDepth, SubpixelResolve, TokenColour, TokenPorts};
 
     const INFO: CardInfo =
         CardInfo { major: 1, minor: 0, effects: Effects::DEPTH, paths: 1, video_memory: 0, za_ram: 0, fifo_words: 0 };
@@ -244,7 +268,7 @@ mod tests {
         let none = Asked::default();
         let asked = asking(CardSettings { hidden_surface: Some(HiddenSurface::Systolic), ..plain });
         assert_eq!(refused(&plain, &asked, &INFO), "--hidden-surface: systolic is not possible: this card has zbuffer");
-        let scene = CardSettings { antialias: Some(Antialias::Grid8x8), ..plain };
+        let scene = CardSettings { antialias: Some(SubpixelGrid::Grid8x8), ..plain };
         assert!(refused(&scene, &none, &INFO).starts_with("a.json: card.antialias: 8x8 is not possible"));
         let asked = asking(CardSettings { fidelity: Some(Fidelity::Clocked), ..plain });
         assert!(
@@ -276,7 +300,36 @@ mod tests {
         assert_eq!(card(HiddenSurface::Tile)["tile_size"], json!([8, 8]));
         let counts =
             [HiddenSurface::ZBuffer, HiddenSurface::Za, HiddenSurface::Systolic, HiddenSurface::Tile].map(keys);
-        assert_eq!(counts, [2, 5, 3, 3]);
+        assert_eq!(counts, [3, 6, 4, 4]);
+    }
+
+    #[test]
+    fn resolve_antialias_of_flags_and_scene_and_report_it() {
+        let info = CardInfo { effects: Effects::DEPTH | Effects::ANTI_ALIAS, ..ALL_PATHS };
+        let plain = CardSettings::default();
+        let scene = CardSettings {
+            antialias: Some(SubpixelGrid::Grid4x4),
+            subpixel_depth: Some(SubpixelDepth::Exhaustive),
+            subpixel_pool: Some(999),
+            ..plain
+        };
+        let flags = CardSettings {
+            antialias: Some(SubpixelGrid::Grid8x4),
+            antialias_resolve: Some(SubpixelResolve::Linear),
+            ..plain
+        };
+        let resolved = |scene: &CardSettings, flags| {
+            Settings::resolve("a.json", scene, &asking(flags), SIZE, &info).expect("possible")
+        };
+        let settings = resolved(&scene, flags);
+        let (depth, resolve) = (SubpixelDepth::Exhaustive, SubpixelResolve::Linear);
+        assert_eq!(settings.antialias, Antialias { grid: SubpixelGrid::Grid8x4, depth, resolve, pool: 999 });
+        let report = settings.report();
+        assert_eq!((&report["antialias"], &report["subpixel_depth"]), (&json!("8x4"), &json!("exhaustive")));
+        assert_eq!((&report["antialias_resolve"], &report["subpixel_pool"]), (&json!("linear"), &json!(999)));
+        let off = resolved(&scene, CardSettings { antialias: Some(SubpixelGrid::Off), ..plain });
+        assert!(!off.is_antialiased());
+        assert_eq!((&off.report()["antialias"], off.report().get("subpixel_depth")), (&json!("off"), None));
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! blending, fog and a texture.
 
 use super::settings::named_values;
-use super::{Colour, Scene};
+use super::{Colour, Scene, SubpixelGrid};
 
 named_values! {
     /// What a light is like.
@@ -142,16 +142,18 @@ pub struct Texture {
 impl Scene {
     /// The paths of all fields of lights and materials that call for an effect, in the file's order of names:
     /// empty for a scene of plain colours. A card without the units refuses or ignores what is listed here.
+    /// Blending by alpha is the sub-pixel unit's, so it is listed where `antialias` is off.
     #[must_use]
-    pub fn unsupported_effects(&self) -> Vec<String> {
+    pub fn unsupported_effects(&self, antialias: SubpixelGrid) -> Vec<String> {
         let mut paths: Vec<String> = (0..self.lights.len()).map(|index| format!("lights[{index}]")).collect();
-        let plain = Material::default();
+        let (plain, layers) = (Material::default(), antialias == SubpixelGrid::Off);
         for (name, material) in &self.materials {
             let called = [
                 ("shininess", material.shininess != plain.shininess),
                 ("specular", material.specular != plain.specular),
                 ("emission", material.emission != plain.emission),
-                ("blend", material.blend != plain.blend),
+                ("blend", material.blend != plain.blend && material.blend != Blend::Alpha),
+                ("blend (translucency needs antialias for now)", layers && material.blend == Blend::Alpha),
                 ("punch_through", material.punch_through.is_some()),
                 ("fog_function", material.fog_function != plain.fog_function),
                 ("texture", material.texture.is_some()),

@@ -5,7 +5,7 @@
 //! the card does the transform.
 
 use super::camera::{wide, wide_matrix};
-use super::{Camera, Colour, Colours, Curve, CurveKind, Draw, IDENTITY, Matrix, MeshDraw, Primitives, Scene};
+use super::{Blend, Camera, Colour, Colours, Curve, CurveKind, Draw, IDENTITY, Matrix, MeshDraw, Primitives, Scene};
 use crate::mesh::Mesh;
 
 /// Angle between two faces from which their common edge is a feature, in degrees.
@@ -49,6 +49,10 @@ pub struct Batch {
     pub slope: Option<f32>,
     /// Name of a material of the scene.
     pub material: Option<String>,
+    /// Alpha is translucency: the material's blend is `alpha`.
+    pub translucent: bool,
+    /// Width of lines or side of points, in pixels, where they are anti-aliased.
+    pub extent: f32,
     /// Object tag.
     pub tag: u32,
 }
@@ -110,6 +114,11 @@ impl Flattener<'_> {
         })
     }
 
+    fn translucent(&self, material: Option<&str>) -> bool {
+        let material = material.and_then(|name| self.scene.materials.get(name));
+        material.is_some_and(|material| material.blend == Blend::Alpha)
+    }
+
     fn primitives(&mut self, draw: &Primitives, topology: Topology, path: String, slope: Option<f32>) {
         let in_order = || (0..draw.vertices.len() as u32).collect();
         let mut batch = Batch {
@@ -123,6 +132,8 @@ impl Flattener<'_> {
             transform: IDENTITY,
             slope,
             material: draw.material.clone(),
+            translucent: self.translucent(draw.material.as_deref()),
+            extent: draw.extent.unwrap_or(1.0),
             tag: self.tag(draw.tag),
         };
         batch.paint(&draw.colours);
@@ -149,6 +160,8 @@ impl Flattener<'_> {
             transform: IDENTITY,
             slope,
             material: curve.material.clone(),
+            translucent: self.translucent(curve.material.as_deref()),
+            extent: curve.width.unwrap_or(1.0),
             tag,
         });
     }
@@ -166,6 +179,8 @@ impl Flattener<'_> {
             transform: named.transform,
             slope,
             material: named.material.clone(),
+            translucent: self.translucent(named.material.as_deref()),
+            extent: 1.0,
             tag,
         };
         let plain = named.colour.map_or_else(|| mesh.colours.clone(), Colours::One);

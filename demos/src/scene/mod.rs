@@ -24,8 +24,9 @@ pub(crate) use camera::{narrow, wide};
 pub use effects::{Blend, FogFunction, Light, LightType, Material, Texture, TextureFilter};
 pub use flatten::{Batch, Topology};
 pub use settings::{
-    Antialias, CardSettings, END_TESTS, EndTest, FIDELITIES, Fidelity, HIDDEN_SURFACES, HiddenSurface, SubpixelDepth,
-    SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, TokenColour, TokenPorts, ZA_PREDICTIONS, ZaPrediction,
+    ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, EndTest, FIDELITIES, Fidelity, HIDDEN_SURFACES,
+    HiddenSurface, MOST_SUBPIXEL_POOL, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelGrid, SubpixelResolve, SystolicSettings,
+    TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, TokenColour, TokenPorts, ZA_PREDICTIONS, ZaPrediction,
 };
 
 use crate::error::{Error, Result};
@@ -97,6 +98,8 @@ pub struct Primitives {
     pub material: Option<String>,
     /// Object tag; without one each draw is its own object.
     pub tag: Option<u32>,
+    /// Width of lines or side of points, in pixels; in use where they are anti-aliased. Without it 1.
+    pub extent: Option<f32>,
 }
 
 /// Colours of the vertices of a draw or a mesh.
@@ -150,6 +153,8 @@ pub struct Curve {
     pub colours: Colours,
     /// Largest distance of a drawn chord from the curve, in pixels.
     pub tolerance: f32,
+    /// Width in pixels; in use where it is anti-aliased. Without it 1.
+    pub width: Option<f32>,
     /// Name of a material of the scene.
     pub material: Option<String>,
     /// Object tag.

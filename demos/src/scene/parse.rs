@@ -8,8 +8,8 @@ use super::json::{ANY, Fault, Json, Object, Read};
 use super::parse_draw::{self, Context};
 use super::parse_effects;
 use super::settings::{
-    Antialias, CardSettings, END_TESTS, FIDELITIES, HIDDEN_SURFACES, SubpixelDepth, SystolicSettings, TILE_SIDES,
-    TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS,
+    ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, HIDDEN_SURFACES, MOST_SUBPIXEL_POOL,
+    SUBPIXEL_DEPTHS, SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS,
 };
 use super::{Camera, Orthographic, Perspective, Scene};
 use crate::error::{Error, Result};
@@ -124,6 +124,8 @@ fn card(value: &Json) -> Read<CardSettings> {
         "fidelity",
         "antialias",
         "subpixel_depth",
+        "antialias_resolve",
+        "subpixel_pool",
         "za_block",
         "za_prediction",
         "za_bypass",
@@ -135,8 +137,10 @@ fn card(value: &Json) -> Read<CardSettings> {
     Ok(CardSettings {
         hidden_surface: fields.optional("hidden_surface", |value| value.named(&HIDDEN_SURFACES))?,
         fidelity: fields.optional("fidelity", |value| value.named(&FIDELITIES))?,
-        antialias: fields.optional("antialias", |value| value.named(Antialias::NAMED))?,
-        subpixel_depth: fields.optional("subpixel_depth", |value| value.named(SubpixelDepth::NAMED))?,
+        antialias: fields.optional("antialias", |value| value.named(&ANTIALIAS_GRIDS))?,
+        subpixel_depth: fields.optional("subpixel_depth", |value| value.named(&SUBPIXEL_DEPTHS))?,
+        antialias_resolve: fields.optional("antialias_resolve", |value| value.named(&ANTIALIAS_RESOLVES))?,
+        subpixel_pool: fields.optional("subpixel_pool", |value| value.whole(1..=MOST_SUBPIXEL_POOL))?,
         za_block: fields
             .optional("za_block", |value| value.array("whole numbers", |side| side.whole(1..=MAX_ZA_BLOCK_SIDE)))?,
         za_prediction: fields.optional("za_prediction", |value| value.named(&ZA_PREDICTIONS))?,

@@ -1,6 +1,7 @@
 //! The draw list of a scene file.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use super::json::{ANY, Fault, Json, Object, Read, quoted};
@@ -8,6 +9,9 @@ use super::{Colours, Curve, CurveKind, DEFAULT_SLOPE, Decal, Draw, IDENTITY, Mat
 
 /// Steepest slope of a decal, either way; far above what any picture needs.
 const MAX_SLOPE: f32 = 65536.0;
+
+/// Narrowest and widest line, least and greatest side of a point, in pixels: 1 and 65535 steps of 1/256.
+const EXTENTS: RangeInclusive<f32> = 1.0 / 256.0..=65_535.0 / 256.0;
 
 /// What a draw may refer to, and where it stands.
 #[derive(Clone, Copy)]
@@ -23,6 +27,21 @@ pub(super) struct Context<'a> {
 struct Kind {
     corners: usize,
     name: &'static str,
+    fields: &'static [&'static str],
+    /// Field with the width or side of what is drawn, if it has one.
+    extent: Option<&'static str>,
+}
+
+/// Fields that all of them have.
+const FIELDS: [&str; 8] =
+    ["vertices", "indices", "colours", "per", "normals", "texture_coordinates", "material", "tag"];
+const TRIANGLES: Kind = Kind { corners: 3, name: "triangles", fields: &FIELDS, extent: None };
+const LINES: Kind = Kind { corners: 2, name: "lines", fields: &fields_and("width"), extent: Some("width") };
+const POINTS: Kind = Kind { corners: 1, name: "points", fields: &fields_and("size"), extent: Some("size") };
+
+const fn fields_and(last: &'static str) -> [&'static str; 9] {
+    let [a, b, c, d, e, f, g, h] = FIELDS;
+    [a, b, c, d, e, f, g, h, last]
 }
 
 /// Reads a draw list.
@@ -33,9 +52,9 @@ pub(super) fn draws(value: &Json, context: Context<'_>) -> Read<Vec<Draw>> {
 fn draw(value: &Json, context: Context<'_>) -> Read<Draw> {
     let (kind, value) = value.tagged(&["triangles", "lines", "points", "curve", "decal", "mesh"])?;
     let read = match kind {
-        "triangles" => primitives(value, context, Kind { corners: 3, name: "triangles" }).map(Draw::Triangles),
-        "lines" => primitives(value, context, Kind { corners: 2, name: "lines" }).map(Draw::Lines),
-        "points" => primitives(value, context, Kind { corners: 1, name: "points" }).map(Draw::Points),
+        "triangles" => primitives(value, context, TRIANGLES).map(Draw::Triangles),
+        "lines" => primitives(value, context, LINES).map(Draw::Lines),
+        "points" => primitives(value, context, POINTS).map(Draw::Points),
         "curve" => curve(value, context).map(Draw::Curve),
         "decal" => decal(value, context).map(Draw::Decal),
         _ => mesh(value, context).map(Draw::Mesh),
@@ -44,16 +63,7 @@ fn draw(value: &Json, context: Context<'_>) -> Read<Draw> {
 }
 
 fn primitives(value: &Json, context: Context<'_>, kind: Kind) -> Read<Primitives> {
-    let fields = value.object(&[
-        "vertices",
-        "indices",
-        "colours",
-        "per",
-        "normals",
-        "texture_coordinates",
-        "material",
-        "tag",
-    ])?;
+    let fields = value.object(kind.fields)?;
     let vertices = fields.required("vertices", |value| positions(value, context))?;
     let last = vertices.len().saturating_sub(1);
     let indices = fields.optional("indices", |value| {
@@ -81,6 +91,7 @@ fn primitives(value: &Json, context: Context<'_>, kind: Kind) -> Read<Primitives
         })?,
         material: material(&fields, context)?,
         tag: tag(&fields)?,
+        extent: kind.extent.map_or(Ok(None), |name| extent(&fields, name))?,
         vertices,
         indices,
     })
@@ -157,6 +168,11 @@ fn tag(fields: &Object<'_>) -> Read<Option<u32>> {
     fields.optional("tag", |value| value.whole(0..=u32::MAX))
 }
 
+/// A width or side in pixels.
+fn extent(fields: &Object<'_>, name: &str) -> Read<Option<f32>> {
+    fields.optional(name, |value| value.number(EXTENTS))
+}
+
 fn slope(fields: &Object<'_>) -> Read<f32> {
     fields.or("slope", DEFAULT_SLOPE, |value| value.number(-MAX_SLOPE..=MAX_SLOPE))
 }
@@ -164,7 +180,8 @@ fn slope(fields: &Object<'_>) -> Read<f32> {
 fn curve(value: &Json, context: Context<'_>) -> Read<Curve> {
     const KINDS: [(&str, CurveKind); 3] =
         [("polyline", CurveKind::Polyline), ("quadratic", CurveKind::Quadratic), ("cubic", CurveKind::Cubic)];
-    let fields = value.object(&["polyline", "quadratic", "cubic", "colours", "per", "tolerance", "material", "tag"])?;
+    let fields =
+        value.object(&["polyline", "quadratic", "cubic", "colours", "per", "tolerance", "width", "material", "tag"])?;
     let mut given = KINDS.iter().filter(|(name, _)| fields.get(name).is_some());
     let (Some((name, kind)), None) = (given.next(), given.next()) else {
         return Err(Fault::new("exactly one of polyline, quadratic, cubic", value.describe()));
@@ -190,6 +207,7 @@ fn curve(value: &Json, context: Context<'_>) -> Read<Curve> {
         colours: colours(&fields, points.len(), None)?,
         points,
         tolerance: fields.or("tolerance", 0.25, |value| value.number(0.001..=1000.0))?,
+        width: extent(&fields, "width")?,
         material: material(&fields, context)?,
         tag: tag(&fields)?,
     })

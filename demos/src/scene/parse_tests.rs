@@ -9,7 +9,8 @@ use super::*;
 /// The example of the format's description, with everything in it.
 const FULL: &str = r#"{ "size": [640, 480], "background": [16, 16, 32, 255],
   "camera": {"screen": {}},
-  "card": {"hidden_surface": "zbuffer", "fidelity": "functional", "antialias": "off", "subpixel_depth": "search",
+  "card": {"hidden_surface": "zbuffer", "fidelity": "functional", "antialias": "8x4", "subpixel_depth": "search",
+           "antialias_resolve": "linear", "subpixel_pool": 65536,
            "za_block": [32, 1], "za_prediction": "block-length", "za_bypass": false, "tile_size": [8, 64],
            "systolic_variant": {"end_test": "zero", "ports": "merged", "colour": "value", "super_buffer": true},
            "depth_bits": 24, "depth_fraction_bits": 24},
@@ -21,9 +22,9 @@ const FULL: &str = r#"{ "size": [640, 480], "background": [16, 16, 32, 255],
      "size": [64,32], "repeat": [true,false], "mirror": [false,true], "palette": [[1,2,3,4]]}}},
   "draw": [
     {"triangles": {"vertices": [[10,10,0.5],[90,12,0.5],[40,80,0.2]], "colours": [[255,0,0,255]], "material": "plain", "tag": 1}},
-    {"lines": {"vertices": [[0,0,0.1],[99,40,0.1]], "colours": [[255,255,255,255]]}},
-    {"points": {"vertices": [[5,5,0]], "indices": [0,0,0]}},
-    {"curve": {"cubic": [[0,0,0],[1,0,0],[1,1,0],[0,1,0]], "tolerance": 0.5}},
+    {"lines": {"vertices": [[0,0,0.1],[99,40,0.1]], "colours": [[255,255,255,255]], "width": 2.5, "material": "glass"}},
+    {"points": {"vertices": [[5,5,0]], "indices": [0,0,0], "size": 8}},
+    {"curve": {"cubic": [[0,0,0],[1,0,0],[1,1,0],[0,1,0]], "tolerance": 0.5, "width": 0.5}},
     {"decal": {"slope": 8.0, "draw": [ {"lines": {"vertices": [[1,1,0.5],[2,2,0.5]], "colours": [[0,0,0,255]]}} ]}},
     {"mesh": {"file": "spot.obj", "transform": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "material": "plain",
               "edges": true, "slope": 4}} ] }"#;
@@ -60,6 +61,12 @@ fn parse_full_example_keeps_every_field() {
     };
     assert_eq!(scene.card.systolic_variant, variant);
     assert_eq!(scene.card.depth_bits, Some(24));
+    let antialias = (scene.card.antialias, scene.card.subpixel_depth);
+    assert_eq!(antialias, (Some(SubpixelGrid::Grid8x4), Some(SubpixelDepth::Search)));
+    let resolve = (scene.card.antialias_resolve, scene.card.subpixel_pool);
+    assert_eq!(resolve, (Some(SubpixelResolve::Linear), Some(65536)));
+    let drawn: Vec<(f32, bool)> = scene.batches().iter().map(|batch| (batch.extent, batch.translucent)).collect();
+    assert_eq!(drawn, [(1.0, false), (2.5, true), (8.0, false), (0.5, false), (1.0, false)]);
     assert_eq!(scene.lights[0].kind, LightType::Spot);
     assert_eq!(scene.materials["glass"].texture.as_ref().expect("a texture").mirror, [false, true]);
     assert_eq!(scene.draw.len(), 6);
@@ -74,16 +81,18 @@ fn parse_full_example_keeps_every_field() {
 fn parse_smallest_scene_has_defaults() {
     let scene = parse(r#"{"size": [1, 16384], "draw": []}"#).expect("valid");
     assert_eq!(scene, Scene::new([1, 16384], [0, 0, 0, 255]));
-    assert!(scene.unsupported_effects().is_empty());
+    assert!(scene.unsupported_effects(SubpixelGrid::Off).is_empty());
 }
 
 #[test]
 fn unsupported_effects_lists_lights_and_material_fields() {
     let scene = parse(FULL).expect("valid");
-    let paths = scene.unsupported_effects();
+    let paths = scene.unsupported_effects(SubpixelGrid::Off);
     assert_eq!(paths[0], "lights[0]");
     let glass = |field: &str| paths.contains(&format!("materials.glass.{field}"));
-    assert!(["shininess", "specular", "blend", "punch_through", "fog_function", "texture"].map(glass) == [true; 6]);
+    assert!(["shininess", "specular", "punch_through", "fog_function", "texture"].map(glass) == [true; 5]);
+    assert!(glass("blend (translucency needs antialias for now)"));
+    assert!(scene.unsupported_effects(SubpixelGrid::Grid4x4).iter().all(|path| !path.contains("blend")));
     assert!(!glass("emission") && paths.iter().all(|path| !path.contains("plain")));
 }
 
@@ -213,6 +222,9 @@ fn parse_wrong_draws_name_path_and_reason() {
     assert_eq!(with(r#""normals": [[0,0,1]]"#)[1], "3 normals, one for each vertex");
     assert_eq!(with(r#""material": "gold""#)[0], "draw[0].triangles.material");
     assert_eq!(with(r#""tag": -1"#)[0], "draw[0].triangles.tag");
+    assert_eq!(with(r#""width": 2"#)[0], "draw[0].triangles.width");
+    assert_eq!(draw_fault(r#"{"points": {"vertices": [[0,0,0]], "size": 256}}"#)[0], "draw[0].points.size");
+    assert_eq!(draw_fault(r#"{"lines": {"vertices": [], "width": 0}}"#)[0], "draw[0].lines.width");
 
     let [path, _, found] = draw_fault(r#"{"lines": {"vertices": [[0,0,0],[1,1,1.5]]}}"#);
     assert_eq!((&*path, &*found), ("draw[0].lines.vertices[1][2]", "1.5"));
@@ -278,6 +290,7 @@ fn batches_bezier_segments_are_not_joined() {
         points: (0..8_u8).map(|i| [f32::from(i * i), f32::from(i % 3), 0.0]).collect(),
         colours: Colours::One([9; 4]),
         tolerance: 0.25,
+        width: Some(2.5),
         material: None,
         tag: None,
     };

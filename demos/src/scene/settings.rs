@@ -1,6 +1,9 @@
 //! What a scene may ask of the card. Every setting is optional: what is absent stays as the card has it.
 
-pub use zga_abi::format::{EndTest, Fidelity, HiddenSurface, TokenColour, TokenPorts, ZaPrediction};
+pub use zga_abi::format::{
+    EndTest, Fidelity, HiddenSurface, SubpixelDepth, SubpixelGrid, SubpixelResolve, TokenColour, TokenPorts,
+    ZaPrediction,
+};
 
 /// Declares an enumeration whose values have names in scene files and on the command line.
 macro_rules! named_values {
@@ -48,34 +51,16 @@ pub const END_TESTS: [(&str, EndTest); EndTest::ALL.len()] = names_of!(EndTest);
 pub const TOKEN_PORTS: [(&str, TokenPorts); TokenPorts::ALL.len()] = names_of!(TokenPorts);
 /// What tokens of the systolic array carry, by name.
 pub const TOKEN_COLOURS: [(&str, TokenColour); TokenColour::ALL.len()] = names_of!(TokenColour);
+/// Grids of samples, by name.
+pub const ANTIALIAS_GRIDS: [(&str, SubpixelGrid); SubpixelGrid::ALL.len()] = names_of!(SubpixelGrid);
+/// Ways to order fragments that share samples, by name.
+pub const SUBPIXEL_DEPTHS: [(&str, SubpixelDepth); SubpixelDepth::ALL.len()] = names_of!(SubpixelDepth);
+/// Spaces in which samples are averaged, by name.
+pub const ANTIALIAS_RESOLVES: [(&str, SubpixelResolve); SubpixelResolve::ALL.len()] = names_of!(SubpixelResolve);
+/// Most fragments that the lists of one line of pixels can have room for.
+pub const MOST_SUBPIXEL_POOL: u32 = 1 << 20;
 /// Sides that a tile of the tile unit can have, in pixels.
 pub const TILE_SIDES: [u32; 5] = [4, 8, 16, 32, 64];
-
-named_values! {
-    /// Sub-pixels of a pixel.
-    Antialias {
-        /// One sample at the pixel centre.
-        Off = "off",
-        /// 16 sub-pixels.
-        Grid4x4 = "4x4",
-        /// 32 sub-pixels.
-        Grid8x4 = "8x4",
-        /// 64 sub-pixels.
-        Grid8x8 = "8x8",
-    }
-}
-
-named_values! {
-    /// Where the depth of a partly covering fragment is taken.
-    SubpixelDepth {
-        /// At the pixel centre.
-        Centre = "centre",
-        /// At the sub-pixels that the mask search finds.
-        Search = "search",
-        /// At every covered sub-pixel.
-        Exhaustive = "exhaustive",
-    }
-}
 
 /// Settings of the card; `None` leaves the card's own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,10 +69,14 @@ pub struct CardSettings {
     pub hidden_surface: Option<HiddenSurface>,
     /// How the units with a clocked model are simulated.
     pub fidelity: Option<Fidelity>,
-    /// Sub-pixels of a pixel.
-    pub antialias: Option<Antialias>,
-    /// Where a fragment's depth is taken.
+    /// Samples of a pixel.
+    pub antialias: Option<SubpixelGrid>,
+    /// How fragments that share samples are ordered.
     pub subpixel_depth: Option<SubpixelDepth>,
+    /// Space in which samples are averaged.
+    pub antialias_resolve: Option<SubpixelResolve>,
+    /// Fragments that the lists of one line of pixels have room for, 1..=[`MOST_SUBPIXEL_POOL`].
+    pub subpixel_pool: Option<u32>,
     /// Width and height of a Za block, in pixels, each 1..=16384.
     pub za_block: Option<[u32; 2]>,
     /// How the least depth of a run is predicted.
@@ -127,6 +116,8 @@ impl CardSettings {
             fidelity: self.fidelity.or(other.fidelity),
             antialias: self.antialias.or(other.antialias),
             subpixel_depth: self.subpixel_depth.or(other.subpixel_depth),
+            antialias_resolve: self.antialias_resolve.or(other.antialias_resolve),
+            subpixel_pool: self.subpixel_pool.or(other.subpixel_pool),
             za_block: self.za_block.or(other.za_block),
             za_prediction: self.za_prediction.or(other.za_prediction),
             za_bypass: self.za_bypass.or(other.za_bypass),

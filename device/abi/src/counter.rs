@@ -34,6 +34,12 @@ impl Counter {
     pub const fn offset(self) -> u32 {
         crate::Reg::Counters.offset() + 8 * self as u32
     }
+
+    /// The counter holds the largest of its events, not their sum.
+    #[must_use]
+    pub const fn is_maximum(self) -> bool {
+        matches!(self, Counter::SubpixelPoolPeakBytes)
+    }
 }
 
 counters! {
@@ -79,4 +85,15 @@ counters! {
     TileLinksRemoved "tile.links_removed" "Polygons unlinked because they end in the tile or row just done.",
     TileSortMemoryBytes "tile.sort_memory_bytes" "Bytes of Y_INDEX, X index and sort buffer that scenes needed, summed over scenes.",
     TileFragmentsNotStored "tile.fragments_not_stored" "Records that cutting each polygon into tiles would have stored beyond one a polygon.",
+    CyclesSubpixel "cycles.subpixel" "Clocks of the sub-pixel mask unit: masks, searches, merges, packing.",
+    SubpixelMasks "subpixel.masks" "Masks made: the samples of a pixel that a fragment covers.",
+    SubpixelSearches "subpixel.searches" "Masks searched for the nearest and the farthest depth of a fragment.",
+    SubpixelSearchSteps "subpixel.search_steps" "Steps of those searches.",
+    SubpixelDepthEvaluations "subpixel.depth_evaluations" "Depths of fragments evaluated at samples.",
+    SubpixelMerges "subpixel.merges" "Pairs of fragments of a pixel whose order was decided.",
+    SubpixelPacked "subpixel.packed" "Pixels packed: samples averaged to the pixel's colour.",
+    SubpixelPixelsActive "subpixel.pixels_active" "Pixels that the unit took part in.",
+    SubpixelFragments "subpixel.fragments" "Fragments stored in the lists of pixels.",
+    SubpixelPoolPeakBytes "subpixel.pool_peak_bytes" "Most bytes that the lists of one line of pixels took, 16 a fragment: a maximum, not a sum.",
+    SubpixelPixelsDegraded "subpixel.pixels_degraded" "Pixels that kept one sample because the pool was full.",
 }

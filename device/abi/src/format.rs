@@ -195,6 +195,62 @@ enumeration! {
     }
 }
 
+enumeration! {
+    /// Samples of a pixel, columns x rows.
+    SubpixelGrid {
+        /// One, at the pixel's centre: no anti-aliasing.
+        Off = 0 "off",
+        /// 16 samples.
+        Grid4x4 = 1 "4x4",
+        /// 32 samples.
+        Grid8x4 = 2 "8x4",
+        /// 64 samples.
+        Grid8x8 = 3 "8x8",
+    }
+}
+
+impl SubpixelGrid {
+    /// Columns and rows of samples; 1 and 1 where it is off.
+    #[must_use]
+    pub const fn size(self) -> [u32; 2] {
+        match self {
+            SubpixelGrid::Off => [1, 1],
+            SubpixelGrid::Grid4x4 => [4, 4],
+            SubpixelGrid::Grid8x4 => [8, 4],
+            SubpixelGrid::Grid8x8 => [8, 8],
+        }
+    }
+
+    /// Samples of a pixel.
+    #[must_use]
+    pub const fn samples(self) -> u32 {
+        let [columns, rows] = self.size();
+        columns * rows
+    }
+}
+
+enumeration! {
+    /// How fragments of a pixel that share samples are ordered.
+    SubpixelDepth {
+        /// By one depth each, that at the pixel's centre.
+        Centre = 0 "centre",
+        /// By the range of depths that a search over the mask finds; sample by sample only where ranges overlap.
+        Search = 1 "search",
+        /// Sample by sample: supersampling.
+        Exhaustive = 2 "exhaustive",
+    }
+}
+
+enumeration! {
+    /// Space in which the samples of a pixel are averaged and layers composed.
+    SubpixelResolve {
+        /// The values of the frame buffer.
+        Values = 0 "values",
+        /// Linear light, through the sRGB curve.
+        Linear = 1 "linear",
+    }
+}
+
 /// Number format of depth: unsigned integers 0 (near) ..= 2^bits - 1 (far).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DepthFormat {

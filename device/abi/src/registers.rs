@@ -228,6 +228,22 @@ registers! {
         22:16 "height" "pixels: 4, 8, 16, 32 or 64";
         6:0 "width" "pixels: 4, 8, 16, 32 or 64";
     }
+    /// Samples of a pixel. With a grid the scene is anti-aliased: its draws may call for the effects `anti_alias` and `blend`.
+    SubpixelGrid "SUBPIXEL_GRID" @ 0x0260 [1] ReadWrite reset &[0], writable 0x3, w1c 0, {
+        1:0 "grid" "columns x rows: 0 off, 1 4x4, 2 8x4, 3 8x8";
+    }
+    /// How fragments of a pixel that share samples are ordered.
+    SubpixelDepth "SUBPIXEL_DEPTH" @ 0x0264 [1] ReadWrite reset &[1], writable 0x3, w1c 0, {
+        1:0 "depth" "0 centre: one depth; 1 search: the range of depths that a search over the mask finds; 2 exhaustive: sample by sample";
+    }
+    /// Space in which the samples of a pixel are averaged and layers composed.
+    SubpixelResolve "SUBPIXEL_RESOLVE" @ 0x0268 [1] ReadWrite reset &[0], writable 0x1, w1c 0, {
+        0:0 "resolve" "0 values: of the frame buffer's values; 1 linear: of linear light, through the sRGB curve";
+    }
+    /// Fragments that the lists of one line of pixels have room for, 1..=2^20. Pixels that find none keep one sample.
+    SubpixelPool "SUBPIXEL_POOL" @ 0x026C [1] ReadWrite reset &[0x0010_0000], writable 0x001F_FFFF, w1c 0, {
+        20:0 "fragments" "1..=1048576, 16 bytes each";
+    }
 
     // Draw state: sampled by each draw -------------------------------------------------------
     /// Effects the draws that follow call for.
@@ -268,6 +284,14 @@ registers! {
     ScissorMaximum "SCISSOR_MAXIMUM" @ 0x0294 [1] ReadWrite reset &[0x7FFF_7FFF], writable 0x7FFF_7FFF, w1c 0, {
         30:16 "y" "pixels, exclusive";
         14:0 "x" "pixels, exclusive";
+    }
+    /// Width of lines that are drawn with the effect `anti_alias`.
+    LineWidth "LINE_WIDTH" @ 0x0298 [1] ReadWrite reset &[0x100], writable 0xFFFF, w1c 0, {
+        15:0 "width" "u8.8, pixels, 1/256..=65535/256";
+    }
+    /// Side of the squares that points are when they are drawn with the effect `anti_alias`.
+    PointSize "POINT_SIZE" @ 0x029C [1] ReadWrite reset &[0x100], writable 0xFFFF, w1c 0, {
+        15:0 "size" "u8.8, pixels, 1/256..=65535/256";
     }
 
     // Geometry: sampled by each draw ---------------------------------------------------------

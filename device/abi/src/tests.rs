@@ -5,7 +5,9 @@ mod codes;
 use crate::bus::{
     FIFO_BASE, FIFO_BYTES, MEMORY_BASE, MEMORY_BYTES, REGISTERS_BASE, REGISTERS_BYTES, ZA_BASE, ZA_BYTES,
 };
-use crate::format::{DepthFormat, DepthFunction, HiddenSurface, PixelFormat};
+use crate::format::{
+    DepthFormat, DepthFunction, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid, SubpixelResolve,
+};
 use crate::registers::REGISTERS;
 use crate::{Access, Bus, Counter, Effects, Fault, FaultCode, Field, Reg, Units};
 use core::time::Duration;
@@ -69,7 +71,11 @@ fn registers_well_known_offsets_stay_where_the_manual_has_them() {
         (Reg::FenceSequence, 0x0140),
         (Reg::TargetSize, 0x0200),
         (Reg::HiddenSurface, 0x0240),
+        (Reg::SubpixelGrid, 0x0260),
+        (Reg::SubpixelPool, 0x026C),
         (Reg::Effects, 0x0280),
+        (Reg::LineWidth, 0x0298),
+        (Reg::PointSize, 0x029C),
         (Reg::ObjectEye, 0x0400),
         (Reg::Decal, 0x0440),
         (Reg::EyeClip, 0x0480),
@@ -167,6 +173,9 @@ fn reset_values_of_enumerations_have_a_meaning() {
     assert_eq!(HiddenSurface::from_code(reset(Reg::HiddenSurface)), Some(HiddenSurface::ZBuffer));
     assert_eq!(DepthFunction::from_code(reset(Reg::DepthControl) & 7), Some(DepthFunction::Less));
     assert_eq!(Effects::from_bits(reset(Reg::Effects)), Some(Effects::DEPTH));
+    assert_eq!(SubpixelGrid::from_code(reset(Reg::SubpixelGrid)), Some(SubpixelGrid::Off));
+    assert_eq!(SubpixelDepth::from_code(reset(Reg::SubpixelDepth)), Some(SubpixelDepth::Search));
+    assert_eq!(SubpixelResolve::from_code(reset(Reg::SubpixelResolve)), Some(SubpixelResolve::Values));
 }
 
 #[test]
@@ -239,6 +248,14 @@ fn counter_names_are_unique_and_carry_their_unit() {
         assert!(counter.name().contains('.'), "{}", counter.name());
         assert!(!counter.doc().is_empty(), "{}", counter.name());
     }
+}
+
+#[test]
+fn counters_of_the_sub_pixel_unit_stand_behind_the_older_ones() {
+    assert_eq!(Counter::TileFragmentsNotStored as usize, 41);
+    assert_eq!(Counter::CyclesSubpixel as usize, 42);
+    let maxima: Vec<_> = Counter::ALL.iter().filter(|counter| counter.is_maximum()).map(|c| c.name()).collect();
+    assert_eq!(maxima, ["subpixel.pool_peak_bytes"]);
 }
 
 // Faults and bus -----------------------------------------------------------------------------

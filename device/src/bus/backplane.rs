@@ -26,10 +26,15 @@ use parking_lot::Mutex;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
 use zga_abi::format::HiddenSurface;
-use zga_abi::{Counter, Effects, Reg};
+use zga_abi::{Effects, Reg};
 
 /// Effects that this card has units for.
-const EFFECTS: Effects = Effects::DEPTH.union(Effects::GOURAUD).union(Effects::PERSPECTIVE).union(Effects::DECAL);
+const EFFECTS: Effects = Effects::DEPTH
+    .union(Effects::GOURAUD)
+    .union(Effects::PERSPECTIVE)
+    .union(Effects::DECAL)
+    .union(Effects::BLEND)
+    .union(Effects::ANTI_ALIAS);
 /// Hidden-surface paths that this card has, as in CAPABILITY_PATHS.
 const PATHS: u32 = {
     let (mut paths, mut index) = (0, 0);
@@ -114,10 +119,7 @@ impl Backplane {
 
     /// Adds what the card has counted to what the registers show, and empties `counted`.
     pub(crate) fn publish(&self, counted: &mut Account) {
-        let mut shown = self.counters.lock();
-        for (&counter, &events) in Counter::ALL.iter().zip(counted.values()) {
-            shown.add(counter, events);
-        }
+        self.counters.lock().merge(counted);
         counted.clear();
     }
 }

@@ -34,6 +34,23 @@ impl Account {
         *value = value.saturating_add(events);
     }
 
+    /// Raises a counter to `value`, for those that hold the largest of their events.
+    pub fn maximum(&mut self, counter: Counter, value: u64) {
+        let largest = &mut self.values[counter as usize];
+        *largest = value.max(*largest);
+    }
+
+    /// Takes in what another account has counted since: sums are added, maxima raised.
+    pub fn merge(&mut self, other: &Account) {
+        for (&counter, &events) in Counter::ALL.iter().zip(&other.values) {
+            if counter.is_maximum() {
+                self.maximum(counter, events);
+            } else {
+                self.add(counter, events);
+            }
+        }
+    }
+
     /// Charges `clocks` to a unit's cycle account and to the total: units do not overlap on this card.
     pub fn charge(&mut self, unit: Counter, clocks: Clocks) {
         self.add(unit, clocks.0);
@@ -60,5 +77,23 @@ impl Account {
     /// Sets all values, in register order.
     pub fn set_values(&mut self, values: [u64; Counter::COUNT]) {
         self.values = values;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn merge_adds_sums_and_raises_maxima() {
+        let (mut shown, mut counted) = (Account::default(), Account::default());
+        for (fragments, bytes) in [(3, 48), (5, 80), (2, 32)] {
+            counted.add(Counter::SubpixelFragments, fragments);
+            counted.maximum(Counter::SubpixelPoolPeakBytes, bytes);
+            shown.merge(&counted);
+            counted.clear();
+        }
+        assert_eq!(shown.get(Counter::SubpixelFragments), 10);
+        assert_eq!(shown.get(Counter::SubpixelPoolPeakBytes), 80);
     }
 }

@@ -69,7 +69,8 @@ impl<B: Bus> Driver<B> {
         self.draw(Topology::Triangles, &vertices)
     }
 
-    /// Draws a line one pixel wide, without its last pixel.
+    /// Draws a line one pixel wide, without its last pixel; with anti-aliasing as wide as
+    /// [`Driver::set_line_width`] says, with both ends cut square.
     ///
     /// # Errors
     /// As [`Driver::draw`].
@@ -77,7 +78,7 @@ impl<B: Bus> Driver<B> {
         self.draw(Topology::Lines, &vertices)
     }
 
-    /// Draws the pixel that a point lies in.
+    /// Draws the pixel that a point lies in; with anti-aliasing a square round it, see [`Driver::set_point_size`].
     ///
     /// # Errors
     /// As [`Driver::draw`].
@@ -121,7 +122,8 @@ impl<B: Bus> Driver<B> {
     ///
     /// # Errors
     /// [`DriverError::OutsideScene`], [`DriverError::VertexCount`] if they do not make whole primitives,
-    /// [`DriverError::View`] for a decal slope that the camera does not allow, or as [`Driver::flush`].
+    /// [`DriverError::View`] for a decal slope that the camera does not allow, [`DriverError::NoGrid`] for blend
+    /// in a scene without a grid, or as [`Driver::flush`].
     pub fn draw(&mut self, topology: Topology, vertices: &[Vertex]) -> Result<(), DriverError> {
         check_whole(topology, vertices.len())?;
         let gouraud = needs_gouraud(topology, |at| vertices[at].colour, vertices.len());

@@ -5,7 +5,7 @@
 
 use super::claim::Claim;
 use super::memory::VideoMemory;
-use super::power::{effect_units, path_unit, really_used};
+use super::power::{SUBPIXEL_EFFECTS, effect_units, path_unit, really_used};
 use super::{Processor, bad_length, outcome, registers};
 use crate::checked::{Draw, DrawState, Target, Words};
 use crate::hardware::Hardware;
@@ -128,6 +128,7 @@ fn draw_state<H: Hardware>(hardware: &H, target: &Target) -> Result<DrawState, F
     let capability = hardware.register(Reg::CapabilityEffects, 0);
     let effects = registers::effects(effects_claim, capability)?;
     effects_claim.require(target.has_depth() || !effects.contains(Effects::DEPTH))?;
+    effects_claim.require(target.subpixel.is_some() || !effects.intersects(SUBPIXEL_EFFECTS))?;
 
     let control = registers::sample(hardware, Reg::DepthControl);
     Ok(DrawState {
@@ -137,6 +138,8 @@ fn draw_state<H: Hardware>(hardware: &H, target: &Target) -> Result<DrawState, F
         material_colour: hardware.register(Reg::MaterialColour, 0),
         tag: hardware.register(Reg::ObjectTag, 0),
         scissor: registers::scissor(hardware, target.colour.width, target.colour.height),
+        line_width: registers::extent(registers::sample(hardware, Reg::LineWidth))?,
+        point_size: registers::extent(registers::sample(hardware, Reg::PointSize))?,
     })
 }
 

@@ -12,6 +12,9 @@ use zga_abi::{Effects, Reg, Units};
 /// Bit 0 of SCANOUT_CONTROL: vertical blanks without present packets.
 const SCANOUT_CONTINUOUS: u32 = 1;
 
+/// Effects of the sub-pixel mask unit: masks, and translucent layers.
+pub(super) const SUBPIXEL_EFFECTS: Effects = Effects::ANTI_ALIAS.union(Effects::BLEND);
+
 /// Effects and units since begin scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Power {
@@ -106,6 +109,6 @@ pub(super) fn effect_units(used: Effects) -> Units {
     let mut units = Units::empty();
     units.set(Units::SHADING, used.intersects(shading));
     units.set(Units::TEXTURE, used.intersects(texture));
-    units.set(Units::SUBPIXEL, used.contains(Effects::ANTI_ALIAS));
+    units.set(Units::SUBPIXEL, used.intersects(SUBPIXEL_EFFECTS));
     units
 }

@@ -3,10 +3,11 @@
 use super::claim::Claim;
 use super::memory::LARGEST_SIDE;
 use super::{bad_length, memory::VideoMemory};
-use crate::checked::{Rectangle, SystolicSetting, ZaSetting};
+use crate::checked::{Rectangle, SubpixelSetting, SystolicSetting, ZaSetting};
 use crate::hardware::Hardware;
 use zga_abi::format::{
-    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, TokenColour, TokenPorts, ZaPrediction,
+    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid, SubpixelResolve,
+    TokenColour, TokenPorts, ZaPrediction,
 };
 use zga_abi::packet::PROBE_RECORD_WORDS;
 use zga_abi::register::Access;
@@ -14,6 +15,8 @@ use zga_abi::{Effects, Fault, FaultCode, Reg, Units};
 
 /// Bit 8 of ZA_PREDICTION: no block is bypassed.
 const ZA_NO_BYPASS: u32 = 1 << 8;
+/// Most fragments of SUBPIXEL_POOL.
+const LARGEST_POOL: u32 = 1 << 20;
 
 /// The value of a one-word register, not checked yet.
 pub(super) fn sample<H: Hardware>(hardware: &H, register: Reg) -> Claim {
@@ -93,6 +96,37 @@ pub(super) fn tile_size(claim: Claim) -> Result<[u32; 2], Fault> {
     let sides = |side: u32| side.is_power_of_two() && (4..=64).contains(&side);
     claim.require(sides(width) && sides(height))?;
     Ok([width, height])
+}
+
+/// How fragments that share samples are ordered.
+pub(super) fn subpixel_depth(claim: Claim) -> Result<SubpixelDepth, Fault> {
+    claim.mean(SubpixelDepth::from_code(claim.value))
+}
+
+/// Fragments that the lists of one line have room for, 1 ..= 2^20.
+pub(super) fn subpixel_pool(claim: Claim) -> Result<u32, Fault> {
+    claim.require((1..=LARGEST_POOL).contains(&claim.value))?;
+    Ok(claim.value)
+}
+
+/// The sub-pixel mask unit's registers; none where the grid is off. All of them are checked, grid or not.
+pub(super) fn subpixel(
+    grid: Claim,
+    depth: Claim,
+    resolve: Claim,
+    pool: Claim,
+) -> Result<Option<SubpixelSetting>, Fault> {
+    let grid = grid.mean(SubpixelGrid::from_code(grid.value))?;
+    let depth = subpixel_depth(depth)?;
+    let resolve = resolve.mean(SubpixelResolve::from_code(resolve.value))?;
+    let pool = subpixel_pool(pool)?;
+    Ok((grid != SubpixelGrid::Off).then_some(SubpixelSetting { grid, depth, resolve, pool }))
+}
+
+/// LINE_WIDTH or POINT_SIZE: u8.8, pixels, not 0.
+pub(super) fn extent(claim: Claim) -> Result<u32, Fault> {
+    claim.require((1..=0xFFFF).contains(&claim.value))?;
+    Ok(claim.value)
 }
 
 /// Bits of a pixel that coordinates are snapped to.
@@ -192,6 +226,9 @@ impl Write {
             Reg::ZaBlock => za_block(claim).map(|_| ()),
             Reg::ZaPrediction => za_prediction(claim).map(|_| ()),
             Reg::TileSize => tile_size(claim).map(|_| ()),
+            Reg::SubpixelDepth => subpixel_depth(claim).map(|_| ()),
+            Reg::SubpixelPool => subpixel_pool(claim).map(|_| ()),
+            Reg::LineWidth | Reg::PointSize => extent(claim).map(|_| ()),
             Reg::HiddenSurface => hidden_surface(claim, hardware.register(Reg::CapabilityPaths, 0)).map(|_| ()),
             Reg::Effects => effects(claim, hardware.register(Reg::CapabilityEffects, 0)).map(|_| ()),
             _ => Ok(()),

@@ -18,7 +18,7 @@ use zga_abi::{Fault, FaultCode, Reg};
 const DEPTH_BYTES: u32 = 4;
 
 /// The registers that begin scene samples.
-pub(super) const TARGET_REGISTERS: [Reg; 15] = [
+pub(super) const TARGET_REGISTERS: [Reg; 19] = [
     Reg::TargetSize,
     Reg::ColourBase,
     Reg::ColourPitch,
@@ -34,6 +34,10 @@ pub(super) const TARGET_REGISTERS: [Reg; 15] = [
     Reg::ZaBase,
     Reg::SystolicVariant,
     Reg::TileSize,
+    Reg::SubpixelGrid,
+    Reg::SubpixelDepth,
+    Reg::SubpixelResolve,
+    Reg::SubpixelPool,
 ];
 
 /// A scene that was begun.
@@ -68,6 +72,10 @@ impl Scene {
             za_base,
             systolic,
             tile,
+            grid,
+            subpixel_depth,
+            resolve,
+            pool,
         ] = claims;
         let memory = VideoMemory::of(hardware);
 
@@ -106,6 +114,7 @@ impl Scene {
             za,
             systolic: registers::systolic(systolic),
             tile: registers::tile_size(tile)?,
+            subpixel: registers::subpixel(grid, subpixel_depth, resolve, pool)?,
         };
         Ok(Scene { registers: values, target })
     }

@@ -16,8 +16,9 @@ pub struct ProcessorState {
     /// Bits of UNITS_POWERED.
     pub units_powered: u32,
     /// TARGET_SIZE, COLOUR_BASE, COLOUR_PITCH, COLOUR_FORMAT, DEPTH_BASE, DEPTH_PITCH, DEPTH_FORMAT,
-    /// HIDDEN_SURFACE, SUBPIXEL_BITS, FIDELITY, ZA_BLOCK, ZA_PREDICTION, ZA_BASE, SYSTOLIC_VARIANT and
-    /// TILE_SIZE as begin scene sampled them; 0 outside a scene.
+    /// HIDDEN_SURFACE, SUBPIXEL_BITS, FIDELITY, ZA_BLOCK, ZA_PREDICTION, ZA_BASE, SYSTOLIC_VARIANT,
+    /// TILE_SIZE, SUBPIXEL_GRID, SUBPIXEL_DEPTH, SUBPIXEL_RESOLVE and SUBPIXEL_POOL as begin scene sampled
+    /// them; 0 outside a scene.
     pub target: [u32; TARGET_REGISTERS.len()],
 }
 

@@ -45,6 +45,14 @@ impl Bench {
         bench
     }
 
+    /// In a scene with 8x8 samples a pixel.
+    pub fn in_scene_with_grid() -> Bench {
+        let mut bench = Bench::with_target();
+        bench.card.set(0x0260, 3);
+        bench.good(0x02, &[]);
+        bench
+    }
+
     /// In a scene without Z buffer; EFFECTS is 0.
     pub fn in_scene_without_depth() -> Bench {
         let mut bench = Bench::with_target();

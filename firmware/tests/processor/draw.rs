@@ -32,6 +32,8 @@ fn draw_inline_triangle_reaches_the_card_with_its_state() {
     bench.card.set(0x0288, 0x8040_2010);
     bench.card.set(0x028C, 77);
     bench.card.set(0x0290, (2 << 16) | 1);
+    bench.card.set(0x0298, 0x0180);
+    bench.card.set(0x029C, 0xFFFF);
     let call = bench.last(0x10, &[&[0, 3, 0], &TRIANGLE[..]].concat());
     let state = DrawState {
         effects: Effects::DEPTH,
@@ -40,6 +42,8 @@ fn draw_inline_triangle_reaches_the_card_with_its_state() {
         material_colour: 0x8040_2010,
         tag: 77,
         scissor: Rectangle { x: 1, y: 2, right: 64, bottom: 32 },
+        line_width: 0x0180,
+        point_size: 0xFFFF,
     };
     let draw = Drawn {
         topology: Topology::Triangles,
@@ -189,6 +193,33 @@ fn draw_with_depth_but_no_z_buffer_is_a_bad_value() {
 }
 
 #[test]
+fn draw_with_masks_or_layers_but_no_grid_is_a_bad_value() {
+    let payload = [&[0, 3, 0], &TRIANGLE[..]].concat();
+    for effects in [1 << 8, 1 << 10, 0x501] {
+        let mut bench = Bench::in_scene();
+        bench.card.set(0x0280, effects);
+        // A grid counts from the next begin scene on.
+        bench.card.set(0x0260, 1);
+        bench.bad(0x10, &payload, FaultCode::BadValue, 0, 0x0280);
+        bench.bad(0x10, &[0, 0, 0], FaultCode::BadValue, 0, 0x0280);
+        bench.good(0x03, &[]);
+        bench.good(0x02, &[]);
+        bench.good(0x10, &payload);
+    }
+}
+
+#[test]
+fn draw_with_a_width_or_size_out_of_range_is_a_bad_value() {
+    for register in [0x0298, 0x029C] {
+        for value in [0, 0x0001_0000] {
+            let mut bench = Bench::in_scene();
+            bench.card.set(register, value);
+            bench.bad(0x10, &[0, 0, 0], FaultCode::BadValue, 0, register);
+        }
+    }
+}
+
+#[test]
 fn draw_with_effects_that_mean_nothing_is_a_bad_value() {
     let mut bench = Bench::in_scene();
     bench.card.set(0x0280, 0x1001);
@@ -205,7 +236,7 @@ fn draw_with_effects_that_the_card_lacks_is_unsupported() {
 
 #[test]
 fn draw_keeps_effects_as_called() {
-    let mut bench = Bench::in_scene();
+    let mut bench = Bench::in_scene_with_grid();
     bench.card.set(0x0280, 0xFFF);
     let calls = bench.good(0x10, &[&[0, 3, 0], &TRIANGLE[..]].concat());
     let called = calls.iter().find_map(|call| match call {

@@ -1,7 +1,7 @@
 //! What every argument of a hardware call promises, said again without the firmware's code.
 
 use crate::mock::Mock;
-use zga_abi::format::{DepthFormat, HiddenSurface, PixelFormat};
+use zga_abi::format::{DepthFormat, HiddenSurface, PixelFormat, SubpixelGrid};
 use zga_abi::{Access, Effects, Reg, Units};
 use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Rows, Surface, Target, Words};
 
@@ -26,6 +26,9 @@ pub fn register_write(register: Reg, word: u32, old: u32, value: u32) {
         Reg::ColourFormat | Reg::ScanoutFormat => assert!(value & 3 <= 2),
         Reg::SubpixelBits => assert!(value == 4 || value == 8),
         Reg::DepthFormat => assert!(DepthFormat::from_code(value).is_some()),
+        Reg::SubpixelDepth => assert!(value <= 2),
+        Reg::SubpixelPool => assert!((1..=1 << 20).contains(&value)),
+        Reg::LineWidth | Reg::PointSize => assert!((1..=0xFFFF).contains(&value)),
         _ => {}
     }
 }
@@ -103,6 +106,10 @@ pub fn target(mock: &Mock, target: &Target) {
         assert!(4 * (u64::from(target.za.base) + blocks) <= u64::from(mock.get(0x0014)));
     }
     assert!(target.tile.iter().all(|side| matches!(side, 4 | 8 | 16 | 32 | 64)));
+    if let Some(subpixel) = target.subpixel {
+        assert_ne!(subpixel.grid, SubpixelGrid::Off);
+        assert!((1..=1 << 20).contains(&subpixel.pool));
+    }
     assert_ne!(mock.get(0x000C) & (1 << target.hidden_surface.code()), 0);
 }
 
@@ -133,6 +140,8 @@ pub fn draw(mock: &Mock, target: &Target, state: &DrawState, draw: &Draw<'_>) {
     inside(target, &state.scissor);
     assert_eq!(state.effects.bits() & !mock.get(0x0008), 0);
     assert!(may_have_depth(target) || !state.effects.contains(Effects::DEPTH));
+    assert!(target.subpixel.is_some() || !state.effects.intersects(Effects::ANTI_ALIAS | Effects::BLEND));
+    assert!((1..=0xFFFF).contains(&state.line_width) && (1..=0xFFFF).contains(&state.point_size));
     words(mock, &draw.vertices);
     let vertex_words = if draw.coloured { 4 } else { 3 };
     let given = match draw.vertices {

@@ -45,7 +45,7 @@ fn begin_scene_keeps_continuous_scanout_powered() {
 
 #[test]
 fn begin_scene_takes_power_and_effects_of_the_last_scene_away() {
-    let mut bench = Bench::in_scene();
+    let mut bench = Bench::in_scene_with_grid();
     draw(&mut bench, 0xFFF, true);
     bench.good(0x31, &[0]);
     bench.good(0x03, &[]);
@@ -68,7 +68,7 @@ fn draw_each_effect_powers_its_unit_and_no_other() {
         (Effects::MIP_MAP, Units::TEXTURE),
         (Effects::LIGHT, Units::SHADING),
         (Effects::FOG, Units::SHADING),
-        (Effects::BLEND, Units::SHADING),
+        (Effects::BLEND, Units::SHADING | Units::SUBPIXEL),
         (Effects::PUNCH_THROUGH, Units::TEXTURE),
         (Effects::ANTI_ALIAS, Units::SUBPIXEL),
         (Effects::STENCIL, Units::empty()),
@@ -76,7 +76,7 @@ fn draw_each_effect_powers_its_unit_and_no_other() {
         (Effects::TEXTURE.union(Effects::PERSPECTIVE), Units::TEXTURE),
     ];
     for (effects, units) in cases {
-        let mut bench = Bench::in_scene();
+        let mut bench = Bench::in_scene_with_grid();
         let calls = draw(&mut bench, effects.bits(), true);
         let powered = plain() | units;
         assert_eq!(calls[0], Call::SetRegister(0x0700, effects.bits()));
@@ -86,6 +86,13 @@ fn draw_each_effect_powers_its_unit_and_no_other() {
         assert_eq!(bench.processor.effects_called(), effects);
         assert_eq!(bench.processor.units_powered(), powered);
     }
+}
+
+#[test]
+fn draw_without_masks_in_a_scene_with_a_grid_leaves_the_sub_pixel_unit_alone() {
+    let mut bench = Bench::in_scene_with_grid();
+    draw(&mut bench, 1, false);
+    assert_eq!(bench.card.units, plain());
 }
 
 #[test]
@@ -138,7 +145,7 @@ fn draw_again_with_the_same_effects_changes_no_power_and_no_register() {
 
 #[test]
 fn draw_that_makes_no_primitive_calls_for_nothing() {
-    let mut bench = Bench::in_scene();
+    let mut bench = Bench::in_scene_with_grid();
     bench.card.set(0x0280, 0xFFF);
     bench.good(0x10, &[0, 0, 0]);
     assert_eq!(bench.processor.effects_called(), Effects::empty());

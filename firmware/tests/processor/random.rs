@@ -127,8 +127,8 @@ fn draw_inline() -> impl Strategy<Value = Vec<u32>> {
 /// The register groups that have an effect on packets.
 fn poke() -> impl Strategy<Value = Step> {
     let offsets = vec![
-        0x0200, 0x0204, 0x0208, 0x020C, 0x0210, 0x0214, 0x0218, 0x0240, 0x0244, 0x0280, 0x0284, 0x0290, 0x0294, 0x0600,
-        0x0608, 0x060C, 0x0680, 0x0688, 0x068C, 0x0690, 0x0694,
+        0x0200, 0x0204, 0x0208, 0x020C, 0x0210, 0x0214, 0x0218, 0x0240, 0x0244, 0x0260, 0x0264, 0x0268, 0x026C, 0x0280,
+        0x0284, 0x0290, 0x0294, 0x0298, 0x029C, 0x0600, 0x0608, 0x060C, 0x0680, 0x0688, 0x068C, 0x0690, 0x0694,
     ];
     // A target and a screen that make sense, word by word.
     let sensible = vec![
@@ -139,7 +139,14 @@ fn poke() -> impl Strategy<Value = Step> {
         (0x0218, 0x1818),
         (0x0240, 1),
         (0x0244, 8),
+        (0x0260, 3),
+        (0x0264, 2),
+        (0x0268, 1),
+        (0x026C, 0x1000),
         (0x0280, 3),
+        (0x0280, 0x503),
+        (0x0298, 0x180),
+        (0x029C, 0x180),
         (0x0600, 0),
         (0x068C, 256),
         (0x0690, 1),
@@ -244,7 +251,7 @@ proptest! {
 
     #[test]
     fn from_state_of_any_words_is_refused_or_gives_them_back(
-        head in (0..3_u32, 0..0x1100_u32, 0..0x1100_u32), target in prop::array::uniform15(number())
+        head in (0..3_u32, 0..0x1100_u32, 0..0x1100_u32), target in prop::array::uniform19(number())
     ) {
         let state = ProcessorState {
             in_scene: head.0,

@@ -76,6 +76,12 @@ fn register_write_values_without_a_meaning_are_refused() {
         (0x0218, 0x0418), // DEPTH_FORMAT: 4 fraction bits
         (0x0244, 0),      // SUBPIXEL_BITS
         (0x0244, 5),
+        (0x0264, 3), // SUBPIXEL_DEPTH
+        (0x026C, 0), // SUBPIXEL_POOL
+        (0x026C, 0x0010_0001),
+        (0x0298, 0), // LINE_WIDTH
+        (0x0298, 0x0001_0000),
+        (0x029C, 0), // POINT_SIZE
     ];
     for (offset, value) in cases {
         Bench::new().bad(0x01, &[offset, value], FaultCode::BadValue, 2, value);
@@ -94,6 +100,11 @@ fn register_write_every_enumerated_value_is_taken() {
     cases.extend((0..3).flat_map(|value| [(0x020C, value), (0x0690, value)]));
     cases.extend((0..4).map(|value| (0x0240, value)));
     cases.extend([(0x0244, 4), (0x0244, 8)]);
+    cases.extend((0..4).map(|value| (0x0260, value)));
+    cases.extend((0..3).map(|value| (0x0264, value)));
+    cases.extend((0..2).map(|value| (0x0268, value)));
+    cases.extend([(0x026C, 1), (0x026C, 0x0010_0000)]);
+    cases.extend([(0x0298, 1), (0x0298, 0xFFFF), (0x029C, 1), (0x029C, 0xFFFF)]);
     for (offset, value) in cases {
         let call = Bench::new().last(0x01, &[offset, value]);
         assert_eq!(call, Call::SetRegister(offset, value));

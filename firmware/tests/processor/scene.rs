@@ -3,11 +3,14 @@
 use crate::bench::{Bench, TRIANGLE};
 use crate::mock::{Call, MEMORY};
 use zga_abi::format::{
-    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, TokenColour, TokenPorts, ZaPrediction,
+    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid, SubpixelResolve,
+    TokenColour, TokenPorts, ZaPrediction,
 };
 use zga_abi::{Fault, FaultCode};
 use zga_firmware::Stopped;
-use zga_firmware::checked::{Clear, DepthSurface, Rectangle, Surface, SystolicSetting, Target, ZaSetting};
+use zga_firmware::checked::{
+    Clear, DepthSurface, Rectangle, SubpixelSetting, Surface, SystolicSetting, Target, ZaSetting,
+};
 
 const WHOLE: Rectangle = Rectangle { x: 0, y: 0, right: 64, bottom: 32 };
 
@@ -23,6 +26,10 @@ fn begin_scene_samples_the_target() {
     bench.card.set(0x0254, 0x40);
     bench.card.set(0x0258, 0b1011);
     bench.card.set(0x025C, 0x0004_0040);
+    bench.card.set(0x0260, 2);
+    bench.card.set(0x0264, 2);
+    bench.card.set(0x0268, 1);
+    bench.card.set(0x026C, 4096);
     let call = bench.last(0x02, &[]);
     let target = Target {
         colour: Surface { base: 0x1000, pitch: 256, width: 64, height: 32, format: PixelFormat::Xrgb8888 },
@@ -39,6 +46,12 @@ fn begin_scene_samples_the_target() {
             super_buffer: true,
         },
         tile: [64, 4],
+        subpixel: Some(SubpixelSetting {
+            grid: SubpixelGrid::Grid8x4,
+            depth: SubpixelDepth::Exhaustive,
+            resolve: SubpixelResolve::Linear,
+            pool: 4096,
+        }),
     };
     assert_eq!(call, Call::BeginScene(target));
     assert_eq!(bench.processor.target(), Some(&target));
@@ -92,6 +105,11 @@ fn begin_scene_with_a_register_at_fault_names_its_offset() {
         (0x025C, size(7, 8), BadValue, 0x025C),
         (0x025C, size(8, 2), BadValue, 0x025C),
         (0x025C, size(128, 8), BadValue, 0x025C),
+        (0x0260, 4, BadValue, 0x0260),
+        (0x0264, 3, BadValue, 0x0264),
+        (0x0268, 2, BadValue, 0x0268),
+        (0x026C, 0, BadValue, 0x026C),
+        (0x026C, 0x0010_0001, BadValue, 0x026C),
     ];
     for (register, value, code, at_fault) in cases {
         let mut bench = Bench::with_target();
@@ -142,6 +160,26 @@ fn begin_scene_on_the_za_path_needs_words_for_all_blocks() {
     // Only that path has a use for them.
     bench.card.set(0x0240, 3);
     bench.good(0x02, &[]);
+}
+
+#[test]
+fn begin_scene_without_a_grid_has_no_sub_pixel_unit() {
+    let mut bench = Bench::with_target();
+    bench.card.set(0x0264, 2);
+    bench.good(0x02, &[]);
+    assert_eq!(bench.processor.target().map(|target| target.subpixel), Some(None));
+}
+
+#[test]
+fn begin_scene_with_a_grid_after_reset_has_the_manual_s_values() {
+    for (code, grid) in [(1, SubpixelGrid::Grid4x4), (2, SubpixelGrid::Grid8x4), (3, SubpixelGrid::Grid8x8)] {
+        let mut bench = Bench::with_target();
+        bench.card.set(0x0260, code);
+        bench.good(0x02, &[]);
+        let setting =
+            SubpixelSetting { grid, depth: SubpixelDepth::Search, resolve: SubpixelResolve::Values, pool: 1 << 20 };
+        assert_eq!(bench.processor.target().and_then(|target| target.subpixel), Some(setting));
+    }
 }
 
 #[test]

@@ -28,13 +28,15 @@ pub struct Composer<'a, 'b> {
     pub(super) bytes: &'b mut Bytes<'a>,
     /// Bytes of video memory.
     pub(super) memory: u32,
+    /// The scene's pixels have samples.
+    grid: bool,
     packets: Vec<Vec<u32>>,
 }
 
 impl<'a, 'b> Composer<'a, 'b> {
     /// Packets for a card with `memory` bytes of video memory.
     pub fn new(bytes: &'b mut Bytes<'a>, memory: u32) -> Composer<'a, 'b> {
-        Composer { bytes, memory, packets: Vec::new() }
+        Composer { bytes, memory, grid: false, packets: Vec::new() }
     }
 
     /// A scene: target, begin, work, end. In every third or so a word is not what it was.
@@ -43,6 +45,7 @@ impl<'a, 'b> Composer<'a, 'b> {
         self.push(Opcode::RegisterWrite, &[&[Reg::TargetSize.offset()][..], &picture.registers()].concat());
         let subpixel = self.bytes.pick(&[8, 8, 8, 4]);
         self.write(Reg::SubpixelBits, &[subpixel]);
+        self.samples();
         self.push(Opcode::BeginScene, &[]);
         self.state(&picture);
         for _ in 0..1 + self.bytes.below(8) {
@@ -132,11 +135,29 @@ impl<'a, 'b> Composer<'a, 'b> {
         }
     }
 
+    /// A grid for every third scene, with any mode and a pool that is often too small; none for the others.
+    fn samples(&mut self) {
+        self.grid = self.bytes.chance(85);
+        let values = if self.grid {
+            let (grid, depth, resolve) = (1 + self.bytes.below(3), self.bytes.below(3), self.bytes.below(2));
+            let pool = self.bytes.pick(&[1 << 20, 1 << 12, 64, 1]);
+            let [width, size] = [0; 2].map(|_: u32| 1 + 16 * self.bytes.below(128));
+            self.write(Reg::LineWidth, &[width, size]);
+            vec![grid, depth, resolve, pool]
+        } else {
+            vec![0]
+        };
+        self.write(Reg::SubpixelGrid, &values);
+    }
+
     /// Effects, depth test, colour, tag, scissor.
     fn state(&mut self, picture: &Picture) {
         let depth = u32::from(picture.depth.is_some());
         let effects = match self.bytes.byte() {
-            0..240 => (self.bytes.below(16) & !1) | (depth & !u32::from(self.bytes.chance(32))),
+            0..240 => {
+                let masks = if self.grid { self.bytes.pick(&[0, 0x400, 0x400, 0x500]) } else { 0 };
+                (self.bytes.below(16) & !1) | (depth & !u32::from(self.bytes.chance(32))) | masks
+            }
             _ => self.bytes.word(),
         };
         let function = self.bytes.below(8) | (u32::from(!self.bytes.chance(40)) << 8);

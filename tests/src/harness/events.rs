@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Index;
 
 /// Names, in the order of the COUNTERS registers.
-pub const NAMES: [&str; 42] = [
+pub const NAMES: [&str; 53] = [
     "cycles.total",
     "cycles.frontend",
     "cycles.geometry",
@@ -47,6 +47,17 @@ pub const NAMES: [&str; 42] = [
     "tile.links_removed",
     "tile.sort_memory_bytes",
     "tile.fragments_not_stored",
+    "cycles.subpixel",
+    "subpixel.masks",
+    "subpixel.searches",
+    "subpixel.search_steps",
+    "subpixel.depth_evaluations",
+    "subpixel.merges",
+    "subpixel.packed",
+    "subpixel.pixels_active",
+    "subpixel.fragments",
+    "subpixel.pool_peak_bytes",
+    "subpixel.pixels_degraded",
 ];
 
 /// Values of all counters.

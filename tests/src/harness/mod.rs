@@ -30,6 +30,7 @@ pub mod picture;
 pub mod random;
 pub mod scenes;
 pub mod screen;
+pub mod subpixel;
 
 pub use events::Events;
 pub use hidden::{Hidden, Path, Prediction};
@@ -37,3 +38,4 @@ pub use options::{Camera, Feed, Options, Pixels, State};
 pub use picture::{Differences, Picture};
 pub use random::Random;
 pub use screen::{Counts, RawVertex, Screen, Topology};
+pub use subpixel::{Grid, Order, Resolve, Subpixel};

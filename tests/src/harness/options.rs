@@ -1,7 +1,8 @@
 //! How a card is built and how it draws.
 
 use super::hidden::Hidden;
-use super::packet::{EFFECT_DECAL, EFFECT_DEPTH, EFFECT_GOURAUD, EFFECT_PERSPECTIVE};
+use super::packet::{EFFECT_ANTI_ALIAS, EFFECT_BLEND, EFFECT_DECAL, EFFECT_DEPTH, EFFECT_GOURAUD, EFFECT_PERSPECTIVE};
+use super::subpixel::Subpixel;
 use crate::oracle::{DepthFormat, DepthFunction};
 use std::fmt;
 use zga_device::Kernel;
@@ -77,6 +78,8 @@ pub struct Options {
     pub vertex_bytes: u32,
     /// Who decides visibility, and how.
     pub hidden: Hidden,
+    /// Samples of a pixel.
+    pub subpixel: Subpixel,
     /// There is a Z buffer.
     pub depth_buffer: bool,
     /// Frame buffers, 1 or 2; they share the Z buffer.
@@ -93,7 +96,7 @@ impl Options {
 
 impl Default for Options {
     /// XRGB8888, 24 bits of depth with 24 fraction bits, 8 sub-pixel bits, one thread, the best kernel, the ring,
-    /// the plain Z buffer, one frame.
+    /// the plain Z buffer, one sample a pixel, one frame.
     fn default() -> Self {
         Self {
             depth: DepthFormat::default(),
@@ -104,6 +107,7 @@ impl Default for Options {
             feed: Feed::Ring,
             vertex_bytes: 0,
             hidden: Hidden::default(),
+            subpixel: Subpixel::default(),
             depth_buffer: true,
             frames: 1,
         }
@@ -157,6 +161,14 @@ pub struct State {
     pub perspective: bool,
     /// Depth through the decal matrix.
     pub decal: bool,
+    /// Sub-pixel masks; only with a grid.
+    pub anti_alias: bool,
+    /// Translucent layers; only with a grid.
+    pub blend: bool,
+    /// Width of lines drawn with masks, u8.8 pixels.
+    pub line_width: u32,
+    /// Side of points drawn with masks, u8.8 pixels.
+    pub point_size: u32,
     /// Left, top, right, bottom in pixels, the last two exclusive; all of the target without it.
     pub scissor: Option<[u32; 4]>,
     /// Geometry registers.
@@ -166,7 +178,7 @@ pub struct State {
 }
 
 impl Default for State {
-    /// Depth test less, written; flat colours; the identity camera.
+    /// Depth test less, written; flat colours; no masks or layers, lines and points one pixel wide; the identity camera.
     fn default() -> Self {
         Self {
             depth_test: true,
@@ -175,6 +187,10 @@ impl Default for State {
             gouraud: false,
             perspective: false,
             decal: false,
+            anti_alias: false,
+            blend: false,
+            line_width: 0x100,
+            point_size: 0x100,
             scissor: None,
             camera: Camera::default(),
             piece: 0,
@@ -185,9 +201,12 @@ impl Default for State {
 impl fmt::Debug for State {
     /// The camera only where it is not the identity.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { depth_test, function, write, scissor, camera, piece, .. } = self;
+        let Self { depth_test, function, write, scissor, camera, piece, line_width, point_size, .. } = self;
         write!(f, "State {{ depth test {depth_test}, {function:?}, write {write}, scissor {scissor:?}, ")?;
         write!(f, "effects {:#x}, pieces of {piece}", self.effects())?;
+        if (*line_width, *point_size) != (0x100, 0x100) {
+            write!(f, ", lines {line_width:#x}, points {point_size:#x}")?;
+        }
         if *camera == Camera::default() { write!(f, " }}") } else { write!(f, ", {camera:?} }}") }
     }
 }
@@ -207,13 +226,23 @@ impl State {
             | bit(self.gouraud, EFFECT_GOURAUD)
             | bit(self.perspective, EFFECT_PERSPECTIVE)
             | bit(self.decal, EFFECT_DECAL)
+            | bit(self.blend, EFFECT_BLEND)
+            | bit(self.anti_alias, EFFECT_ANTI_ALIAS)
     }
 
-    /// Words of effects, depth control, material colour, tag, scissor minimum and maximum.
+    /// The default with sub-pixel masks.
     #[must_use]
-    pub fn words(&self) -> [u32; 6] {
+    pub fn masked() -> Self {
+        Self { anti_alias: true, ..Self::default() }
+    }
+
+    /// Words of effects, depth control, material colour, tag, scissor minimum and maximum, line width, point size.
+    #[must_use]
+    pub fn words(&self) -> [u32; 8] {
         let function = DepthFunction::ALL.iter().position(|&f| f == self.function).unwrap_or(0) as u32;
         let [left, top, right, bottom] = self.scissor.unwrap_or([0, 0, 0x7FFF, 0x7FFF]);
-        [self.effects(), function | u32::from(self.write) << 8, u32::MAX, 0, top << 16 | left, bottom << 16 | right]
+        let control = function | u32::from(self.write) << 8;
+        let (first, last) = (top << 16 | left, bottom << 16 | right);
+        [self.effects(), control, u32::MAX, 0, first, last, self.line_width, self.point_size]
     }
 }

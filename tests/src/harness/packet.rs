@@ -22,7 +22,9 @@ pub const FENCE_SEQUENCE: u32 = 0x0140;
 pub const TARGET: u32 = 0x0200;
 /// Hidden-surface path, sub-pixel bits, fidelity, Za block, prediction and base, systolic variant, tile size.
 pub const PATH: u32 = 0x0240;
-/// Effects, depth control, material colour, tag, scissor minimum, scissor maximum.
+/// Sub-pixel grid, depth, resolve and pool.
+pub const SUBPIXEL: u32 = 0x0260;
+/// Effects, depth control, material colour, tag, scissor minimum, scissor maximum, line width, point size.
 pub const DRAW_STATE: u32 = 0x0280;
 /// Object to eye, decal, eye to clip (16 each), viewport (6).
 pub const GEOMETRY: u32 = 0x0400;
@@ -51,6 +53,10 @@ pub const EFFECT_GOURAUD: u32 = 2;
 pub const EFFECT_PERSPECTIVE: u32 = 4;
 /// Effect: depth through the decal matrix.
 pub const EFFECT_DECAL: u32 = 8;
+/// Effect: translucent layers.
+pub const EFFECT_BLEND: u32 = 0x100;
+/// Effect: sub-pixel masks.
+pub const EFFECT_ANTI_ALIAS: u32 = 0x400;
 
 /// A packet: opcode in 31:24, number of payload words in 19:0, payload.
 #[must_use]

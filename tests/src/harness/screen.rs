@@ -10,6 +10,7 @@ use super::hidden::{Hidden, Path};
 use super::options::{Feed, Options, Pixels, State};
 use super::packet;
 use super::picture::Picture;
+use super::subpixel::Subpixel;
 use crate::oracle::{Primitive, Vertex};
 use std::time::Duration;
 use zga_abi::Bus;
@@ -194,6 +195,7 @@ impl Screen {
         let target = [size, colour, colour_pitch, pixels as u32, depth, depth_pitch, format];
         self.push(packet::registers(packet::TARGET, &target));
         self.push(packet::registers(packet::PATH, &hidden.words(subpixel_bits)));
+        self.push(packet::registers(packet::SUBPIXEL, &self.options.subpixel.words()));
     }
 
     /// The registers as they are for the frame drawn to.
@@ -214,6 +216,13 @@ impl Screen {
     pub fn set_hidden(&mut self, hidden: Hidden, depth_buffer: bool) {
         self.end();
         (self.options.hidden, self.options.depth_buffer) = (hidden, depth_buffer);
+        self.set_target();
+    }
+
+    /// Has pixels have other samples, or the same in another way, from the next scene on.
+    pub fn set_subpixel(&mut self, subpixel: Subpixel) {
+        self.end();
+        self.options.subpixel = subpixel;
         self.set_target();
     }
 

@@ -1,7 +1,9 @@
 //! Every code in a packet or register comes back from the value it stands for.
 
 use crate::FaultCode;
-use crate::format::{DepthFormat, DepthFunction, HiddenSurface, PixelFormat, Topology};
+use crate::format::{
+    DepthFormat, DepthFunction, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid, SubpixelResolve, Topology,
+};
 use crate::packet::{DrawFlags, MAX_PAYLOAD, Opcode, header, payload_words};
 use std::collections::HashSet;
 use std::vec::Vec;
@@ -53,6 +55,21 @@ round_trips! {
     depth_function_codes_round_trip: DepthFunction, 8;
     topology_codes_round_trip: Topology, 8;
     hidden_surface_codes_round_trip: HiddenSurface, 8;
+    subpixel_grid_codes_round_trip: SubpixelGrid, 8;
+    subpixel_depth_codes_round_trip: SubpixelDepth, 8;
+    subpixel_resolve_codes_round_trip: SubpixelResolve, 8;
+}
+
+#[test]
+fn subpixel_grid_names_are_columns_by_rows_and_samples_their_product() {
+    let sizes = [("off", [1, 1], 1), ("4x4", [4, 4], 16), ("8x4", [8, 4], 32), ("8x8", [8, 8], 64)];
+    let found: Vec<_> = SubpixelGrid::ALL.iter().map(|grid| (grid.name(), grid.size(), grid.samples())).collect();
+    assert_eq!(found, sizes);
+    assert_eq!(
+        SubpixelDepth::ALL.iter().map(|mode| mode.name()).collect::<Vec<_>>(),
+        ["centre", "search", "exhaustive"]
+    );
+    assert_eq!(SubpixelResolve::ALL.iter().map(|mode| mode.name()).collect::<Vec<_>>(), ["values", "linear"]);
 }
 
 #[test]

@@ -44,6 +44,7 @@ pub(super) fn target(width: u32, height: u32, format: DepthFormat, pixels: Pixel
         za: ZaSetting::default(),
         systolic: SystolicSetting::default(),
         tile: [8, 8],
+        subpixel: None,
     }
 }
 

@@ -28,6 +28,7 @@ pub fn target(size: [u32; 2], tile: [u32; 2], format: PixelFormat, depth: DepthF
         za: ZaSetting::default(),
         systolic: SystolicSetting::default(),
         tile,
+        subpixel: None,
     }
 }
 
