@@ -5,3 +5,4 @@ pub mod hard;
 pub mod harness;
 pub mod oracle;
 pub mod script;
+pub mod study;

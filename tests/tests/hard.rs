@@ -1,6 +1,6 @@
 //! Every hard case of the manual, chapter "Numbers", as a test of its own. `--nocapture` prints the rows.
 
-use zga_tests::hard::{CASES, Row, card, depth, lines, rasteriser, systolic, za};
+use zga_tests::hard::{CASES, Row, card, depth, lines, rasteriser, subpixel, systolic, za};
 
 fn check(row: &Row) {
     println!("{row}");
@@ -60,6 +60,14 @@ cases! {
     systolic::refresh_with_tokens_in_flight,
     systolic::extreme_gradients,
     systolic::disjoint_segments_permuted,
+    subpixel::edges_through_samples,
+    subpixel::start_corner_ties,
+    subpixel::fans_inside_a_pixel,
+    subpixel::doubling_back_on_a_diagonal,
+    subpixel::interpenetration,
+    subpixel::many_layers,
+    subpixel::merge_in_any_order,
+    subpixel::triangles_between_samples,
     lines::zero_length,
     lines::diamond_corners,
     lines::polylines_and_the_longest_line,

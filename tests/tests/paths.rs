@@ -12,7 +12,7 @@ use proptest::test_runner::{FileFailurePersistence, TestCaseError};
 use zga_device::Kernel;
 use zga_tests::harness::hidden::SUPER_BUFFER;
 use zga_tests::harness::scenes::Piece;
-use zga_tests::harness::{Hidden, Path, Pixels, Prediction, State};
+use zga_tests::harness::{Hidden, Path, Pixels, Prediction, State, Subpixel};
 use zga_tests::oracle::{DepthFormat, Vertex};
 use zga_tests::script::any::script;
 use zga_tests::script::{Command, Outcome, Scene, Script, Way, judge, run};
@@ -203,6 +203,7 @@ fn clear_after_a_draw_that_meets_nothing_is_no_background_in_either_fidelity() {
         pixels: Pixels::Xrgb8888,
         depthless: false,
         gouraud: false,
+        subpixel: Subpixel::default(),
         scenes: vec![Scene { frame: 0, commands: vec![clear.clone(), outside, clear], after: vec![] }],
     };
     for hidden in [Hidden::systolic(0), Hidden::tile([8, 8])] {

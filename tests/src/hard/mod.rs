@@ -15,6 +15,7 @@ pub mod card;
 pub mod depth;
 pub mod lines;
 pub mod rasteriser;
+pub mod subpixel;
 pub mod systolic;
 pub mod za;
 
@@ -82,6 +83,14 @@ pub const CASES: &[fn() -> Row] = &[
     systolic::refresh_with_tokens_in_flight,
     systolic::extreme_gradients,
     systolic::disjoint_segments_permuted,
+    subpixel::edges_through_samples,
+    subpixel::start_corner_ties,
+    subpixel::fans_inside_a_pixel,
+    subpixel::doubling_back_on_a_diagonal,
+    subpixel::interpenetration,
+    subpixel::many_layers,
+    subpixel::merge_in_any_order,
+    subpixel::triangles_between_samples,
     lines::zero_length,
     lines::diamond_corners,
     lines::polylines_and_the_longest_line,

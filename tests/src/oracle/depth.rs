@@ -170,6 +170,24 @@ impl PrescribedDepth {
         rounded.clamp(self.least.into(), self.greatest.into()) as u32
     }
 
+    /// The depth at a sample of pixel `(i, j)` that lies `(u, v)` in 1/256 pixel from the pixel's upper left corner,
+    /// before the last rounding and the limits: in 2^-F steps, times 256.
+    #[must_use]
+    pub fn interpolated_in(&self, i: i32, j: i32, [u, v]: [u32; 2]) -> i128 {
+        let from_centre = |offset: u32| i128::from(offset) - 128;
+        256 * self.interpolated(i, j) + from_centre(u) * self.step_x + from_centre(v) * self.step_y
+    }
+
+    /// The depth that the card gives to that sample: half a step is added, then the fraction dropped. Without fraction
+    /// bits (F = 0) there is no half step in the card's words, so nothing is added.
+    #[must_use]
+    pub fn stored_in(&self, i: i32, j: i32, at: [u32; 2]) -> u32 {
+        let half = if self.fraction == 0 { 0 } else { 1 << (self.fraction - 1) };
+        let step: i128 = 256 << self.fraction;
+        let z = (self.interpolated_in(i, j, at) + 256 * half).div_euclid(step);
+        z.clamp(self.least.into(), self.greatest.into()) as u32
+    }
+
     /// Bound on `|interpolated * 2^-F - true depth|` at pixel `(i, j)` of a triangle, in steps:
     /// `(|i - anchor_x| + |j - anchor_y| + 1) 2^-(F+1)`. The stored depth is at most 1/2 farther off.
     #[must_use]

@@ -228,3 +228,42 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn stored_in_known_plane_is_the_written_sum() {
+    // z = 1000 at the anchor's centre, 8 steps a pixel to the right, -4 down; a quarter pixel is 2 steps and -1.
+    let plane = PrescribedDepth {
+        anchor_x: 3,
+        anchor_y: 2,
+        reference: 1000 << 8,
+        step_x: 8 << 8,
+        step_y: -4 << 8,
+        least: 0,
+        greatest: 1005,
+        fraction: 8,
+    };
+
+    let at = |i, j, u, v| plane.stored_in(i, j, [u, v]);
+
+    assert_eq!([at(3, 2, 128, 128), at(3, 2, 192, 128), at(3, 2, 128, 64)], [1000, 1002, 1001]);
+    // 1000 + 8 * 32/256 - 4 * 32/256 = 1000.5 goes up; one pixel on the plane is limited.
+    assert_eq!([at(3, 2, 160, 160), at(3, 2, 96, 96), at(4, 2, 32, 32)], [1001, 1000, 1005]);
+    // Without fraction bits there is no half step: the fraction is dropped.
+    let coarse = PrescribedDepth { reference: 1000, step_x: 8, step_y: -4, fraction: 0, ..plane };
+    assert_eq!([coarse.stored_in(3, 2, [160, 160]), coarse.stored_in(3, 2, [96, 96])], [1000, 999]);
+}
+
+proptest! {
+    #[test]
+    fn stored_in_the_centre_is_the_pixels_depth(
+        xy in prop::array::uniform6(-700i32..1800), z in prop::array::uniform3(0u32..1 << 24), fraction in 0u32..4,
+    ) {
+        let primitive = Primitive::Triangle([0, 1, 2].map(|k| Vertex::at(xy[2 * k], xy[2 * k + 1], z[k])));
+        let format = DepthFormat { bits: 24, fraction: 8 * fraction };
+        let Some(plane) = PrescribedDepth::new(&primitive, format) else { return Ok(()) };
+
+        for (i, j) in (0..16).map(|k| (k % 4, k / 4)) {
+            prop_assert_eq!(plane.stored_in(i, j, [128, 128]), plane.stored(i, j));
+        }
+    }
+}

@@ -11,6 +11,7 @@
 //! | [`truth`] | the picture with unrounded depths: [`draw_true`] | the same, compared as rationals |
 //! | [`canvas`] | the picture of many commands: any state, clears of planes and rectangles | the same |
 //! | [`clip`] | the unsnapped polygon of a homogeneous triangle | Sutherland and Hodgman 1974; Blinn and Newell 1978 |
+//! | [`supersample`] | the anti-aliased picture: masks, layers, mean of the samples | the rules of one sample, at each sample; Porter and Duff 1984 |
 //! | [`colour`] | affine and perspective-correct colours at a pixel centre | barycentric interpolation; Blinn 1992, "Hyperbolic interpolation" |
 //! | [`exact`] | fractions, floors and roundings | arithmetic |
 //!
@@ -37,6 +38,7 @@ pub mod depth;
 pub mod exact;
 pub mod image;
 pub mod raster;
+pub mod supersample;
 pub mod truth;
 
 pub use image::{Image, draw};

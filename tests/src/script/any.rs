@@ -5,7 +5,7 @@
 
 use super::{Between, Command, Scene, Script};
 use crate::harness::scenes::{Piece, any_depth, piece};
-use crate::harness::{Pixels, State};
+use crate::harness::{Pixels, State, Subpixel};
 use crate::oracle::{DepthFormat, DepthFunction, Vertex};
 use proptest::prelude::*;
 
@@ -22,21 +22,21 @@ struct Frame {
 }
 
 /// Widths around blocks, chunks and tiles; the picture stays small, since clocked models are slow.
-fn size(most: u32) -> impl Strategy<Value = [u32; 2]> {
+pub(super) fn size(most: u32) -> impl Strategy<Value = [u32; 2]> {
     let sides = [1, 7, 8, 9, 15, 16, 17, 31, 32, 33, 40, 63, 64, 65, 100];
     let sides: Vec<u32> = sides.into_iter().filter(|&side| side <= most).collect();
     let side = move || prop_oneof![2 => prop::sample::select(sides.clone()), 1 => 1..=most];
     [side(), side()]
 }
 
-fn format() -> impl Strategy<Value = DepthFormat> {
+pub(super) fn format() -> impl Strategy<Value = DepthFormat> {
     let bits = prop_oneof![1 => Just(16), 3 => Just(24), 2 => Just(31)];
     let fraction = prop_oneof![1 => Just(0), 1 => Just(8), 1 => Just(16), 3 => Just(24)];
     (bits, fraction).prop_map(|(bits, fraction)| DepthFormat { bits, fraction })
 }
 
 /// A rectangle: any, on the boundaries of blocks, or empty; left, top, right, bottom.
-fn rectangle([width, height]: [u32; 2]) -> impl Strategy<Value = [u32; 4]> {
+pub(super) fn rectangle([width, height]: [u32; 2]) -> impl Strategy<Value = [u32; 4]> {
     let free = [0..=width, 0..=height, 0..=width + 2, 0..=height + 2];
     let free = free.prop_map(|[left, top, right, bottom]| [left, top, right, bottom]);
     let aligned = (0..=width / 8, 0..=height / 8, 1_u32..6, 1_u32..6);
@@ -60,7 +60,7 @@ fn state(frame: Frame) -> impl Strategy<Value = State> {
 }
 
 /// Layers over all of the target or most of it, tilted a little or not at all: what a bypass is for.
-fn stack([width, height]: [u32; 2], bits: u32) -> impl Strategy<Value = Vec<Piece>> {
+pub(super) fn stack([width, height]: [u32; 2], bits: u32) -> impl Strategy<Value = Vec<Piece>> {
     let layer = (any_depth(bits), 0_u32..3, -600_i32..600);
     prop::collection::vec(layer, 1..7).prop_map(move |layers| {
         let [right, bottom] = [width as i32 * 512 + 512, height as i32 * 512 + 512];
@@ -162,6 +162,7 @@ pub fn script(most: u32, scenes: usize) -> impl Strategy<Value = Script> {
                     pixels,
                     depthless,
                     gouraud,
+                    subpixel: Subpixel::default(),
                     scenes,
                 })
             })

@@ -20,7 +20,8 @@ impl Judgement {
     #[must_use]
     pub fn fault(&self, outcome: &Outcome) -> Option<String> {
         let Self { shown, looks, depths } = self.clone();
-        outcome.difference(&Outcome { shown, looks, depths: Some(depths), strays: 0, events: outcome.events })
+        let depths = Some(depths);
+        outcome.difference(&Outcome { shown, looks, depths, stored: None, strays: 0, events: outcome.events })
     }
 }
 
@@ -65,7 +66,7 @@ pub fn judge(script: &Script, forgets: bool) -> Option<Judgement> {
     Some(judgement)
 }
 
-fn test(state: &State, [width, height]: [u32; 2]) -> Test {
+pub(super) fn test(state: &State, [width, height]: [u32; 2]) -> Test {
     Test {
         function: state.depth_test.then_some(state.function),
         write: state.write,
@@ -104,7 +105,7 @@ fn change(canvas: &mut Canvas, between: &Between, pixels: Pixels) {
 }
 
 /// Stored pixels of a format.
-fn encode(pixels: Pixels) -> fn([u8; 4]) -> u32 {
+pub(super) fn encode(pixels: Pixels) -> fn([u8; 4]) -> u32 {
     match pixels {
         Pixels::Xrgb8888 => |[r, g, b, _]| u32::from_be_bytes([255, r, g, b]),
         Pixels::Argb8888 => |[r, g, b, a]| u32::from_be_bytes([a, r, g, b]),
@@ -113,7 +114,7 @@ fn encode(pixels: Pixels) -> fn([u8; 4]) -> u32 {
 }
 
 /// What scan-out makes of a stored pixel.
-const fn shown(pixels: Pixels, pixel: u32) -> u32 {
+pub(super) const fn shown(pixels: Pixels, pixel: u32) -> u32 {
     match pixels {
         Pixels::Xrgb8888 | Pixels::Argb8888 => pixel | 0xFF00_0000,
         Pixels::Rgb565 => {

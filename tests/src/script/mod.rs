@@ -9,16 +9,18 @@
 //! | [`mod@any`] | random ones |
 //! | [`run`] | on the card |
 //! | [`mod@judge`] | by the oracle |
+//! | [`mod@smooth`] | random ones whose pixels have samples, and their oracle |
 
 pub mod any;
 pub mod judge;
 mod run;
+pub mod smooth;
 
 pub use judge::judge;
 pub use run::{Outcome, Way, run};
 
 use crate::harness::scenes::{Piece, primitives};
-use crate::harness::{Pixels, Random, State};
+use crate::harness::{Grid, Pixels, Random, State, Subpixel};
 use crate::oracle::{DepthFormat, Primitive, Vertex};
 
 /// Scenes on one or two frames that share a Z buffer.
@@ -34,6 +36,8 @@ pub struct Script {
     pub depthless: bool,
     /// Colours are interpolated.
     pub gouraud: bool,
+    /// Samples of a pixel.
+    pub subpixel: Subpixel,
     /// In order.
     pub scenes: Vec<Scene>,
 }
@@ -116,6 +120,13 @@ impl Script {
                 Primitive::Point(v) => std::slice::from_mut(v),
             };
             vertices.iter_mut().for_each(|vertex| vertex.colour = (random.bits() as u32).to_le_bytes());
+            // Where fragments are translucent alpha matters: often one that makes no layer. One colour, because the
+            // two triangles of a line or a point have corners of different ends.
+            if self.subpixel.grid != Grid::Off {
+                let [r, g, b, alpha] = vertices[0].colour;
+                let alpha = [alpha, alpha, 255, 255, 0, 254, 1][random.range(0, 6) as usize];
+                vertices.iter_mut().for_each(|vertex| vertex.colour = [r, g, b, alpha]);
+            }
         }
         primitives
     }

@@ -46,6 +46,8 @@ pub struct Outcome {
     pub looks: Vec<Option<Vec<u32>>>,
     /// Depths at the end; none without a Z buffer that lasts.
     pub depths: Option<Vec<u32>>,
+    /// The frame drawn to last, as it is stored; not where nobody knows it.
+    pub stored: Option<Vec<u32>>,
     /// Words of memory outside the target that changed.
     pub strays: usize,
     /// What the units counted.
@@ -82,7 +84,11 @@ impl Outcome {
             }
         }
         let what = self.depths.as_ref().zip(other.depths.as_ref()).and_then(|(mine, others)| first(mine, others));
-        what.map(|what| format!("depth {what}"))
+        if let Some(what) = what {
+            return Some(format!("depth {what}"));
+        }
+        let what = self.stored.as_ref().zip(other.stored.as_ref()).and_then(|(mine, others)| first(mine, others));
+        what.map(|what| format!("stored pixel {what}"))
     }
 }
 
@@ -96,6 +102,7 @@ pub fn run(script: &Script, way: &Way) -> Outcome {
         kernel: way.kernel,
         threads: way.threads,
         hidden: way.hidden[0],
+        subpixel: script.subpixel,
         depth_buffer: way.depth_buffer,
         frames: 2,
         ..Options::default()
@@ -188,8 +195,15 @@ impl Runner<'_> {
         let lasting = self.way.depth_buffer && !self.way.forgets;
         let depths = lasting.then(|| self.screen.depths());
         add(&mut self.events, &self.screen.events());
-        let strays = self.screen.read().strays;
-        Outcome { shown: self.shown, looks: self.looks, depths, strays, events: self.events.of_units() }
+        let picture = self.screen.read();
+        Outcome {
+            shown: self.shown,
+            looks: self.looks,
+            depths,
+            stored: Some(picture.colour),
+            strays: picture.strays,
+            events: self.events.of_units(),
+        }
     }
 }
 

@@ -7,7 +7,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 
 use super::super::Vertex;
-use super::super::exact::{integer, ratio};
+use super::super::exact::{Fraction, integer, ratio};
 
 /// A point with rational coordinates; the unit is the caller's.
 pub type ExactPoint = [BigRational; 2];
@@ -30,6 +30,31 @@ pub fn rectangle_area(triangle: &[Vertex; 3], least: [i128; 2], greatest: [i128;
         polygon = cut(&polygon, |p| &high - &p[axis]);
     }
     signed_area(&polygon).abs()
+}
+
+/// The part of the pixel with its upper left corner at (0, 0) where `a x + b y + c >= 0` (x and y in u), `0..=1`.
+///
+/// Turned so that a and b are positive, the line cuts a right triangle with legs t/a and t/b off the quadrant, of which
+/// the corners beyond the pixel's sides, again right triangles, are taken away: no polygon, only squares.
+///
+/// # Panics
+/// When a and b are both 0.
+#[must_use]
+pub fn half_plane_area(a: i64, b: i64, c: i64) -> Fraction {
+    assert!(a != 0 || b != 0, "a half-plane has a direction");
+    let [a, b, c] = [a, b, c].map(i128::from);
+    // Along an axis on which the function falls, the pixel is read from the other side.
+    let from = c + 256 * (a.min(0) + b.min(0));
+    let (a, b) = (256 * a.abs(), 256 * b.abs());
+    // The function is `from` in the least corner; what is below 0 is left out: legs of -from.
+    let t = -from;
+    let square = |value: i128| value.max(0) * value.max(0);
+    let (outside, whole) = if a == 0 || b == 0 {
+        (t.clamp(0, a + b), a + b)
+    } else {
+        (square(t) - square(t - a) - square(t - b) + square(t - a - b), 2 * a * b)
+    };
+    Fraction::new(whole - outside, whole)
 }
 
 /// The part of a convex polygon, in any number of dimensions, where the linear function `side` is not negative.
@@ -87,11 +112,31 @@ mod tests {
     }
 
     #[test]
+    fn half_plane_area_known_lines_are_exact() {
+        // x >= 64; y <= 64; x + y <= 256; x - y >= 128; nothing; all.
+        let lines = [(1, 0, -64), (0, -1, 64), (-1, -1, 256), (1, -1, -128), (1, 1, -512), (3, -1, 256)];
+
+        let areas = lines.map(|(a, b, c)| half_plane_area(a, b, c).to_rational());
+
+        assert_eq!(areas, [ratio(3, 4), ratio(1, 4), ratio(1, 2), ratio(1, 8), ratio(0, 1), ratio(1, 1)]);
+    }
+
+    #[test]
     fn pixel_area_area_zero_is_zero() {
         assert_eq!(pixel_area(&triangle([(0, 0), (100, 100), (200, 200)]), 0, 0), BigRational::zero());
     }
 
     proptest! {
+        #[test]
+        fn half_plane_area_any_line_equals_the_cut_square(a in -99i64..99, b in -99i64..99, c in -40_000i64..40_000) {
+            prop_assume!(a != 0 || b != 0);
+            let corners = [(0, 0), (256, 0), (256, 256), (0, 256)].map(|(x, y)| [integer(x), integer(y)]);
+
+            let kept = cut(&corners, |[x, y]| integer(a) * x + integer(b) * y + integer(c));
+
+            prop_assert_eq!(half_plane_area(a, b, c).to_rational(), signed_area(&kept).abs() / integer(256 * 256));
+        }
+
         #[test]
         fn pixel_area_summed_over_pixels_is_the_triangles_area(xy in prop::array::uniform6(0i32..1024)) {
             let t = triangle([(xy[0], xy[1]), (xy[2], xy[3]), (xy[4], xy[5])]);

@@ -10,9 +10,9 @@ pub mod area;
 pub mod line;
 pub mod triangle;
 
-pub use area::pixel_area;
+pub use area::{half_plane_area, pixel_area};
 pub use line::line_covers;
-pub use triangle::{triangle_covers, triangle_covers_at};
+pub use triangle::{Outline, triangle_covers, triangle_covers_at};
 
 use super::{Primitive, Vertex};
 

@@ -77,6 +77,24 @@ pub fn triangle_covers_at(triangle: &[Vertex; 3], x: i64, y: i64, scale: i64) ->
     edges(triangle).is_some_and(|edges| edges.iter().all(|edge| edge.admits(edge.at(x.into(), y.into(), scale.into()))))
 }
 
+/// The three edges of a triangle, worked out once for many sample positions.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline([Edge; 3]);
+
+impl Outline {
+    /// `None` for area 0.
+    #[must_use]
+    pub fn new(triangle: &[Vertex; 3]) -> Option<Self> {
+        edges(triangle).map(Self)
+    }
+
+    /// Whether the point `(x, y)`, in u, is covered.
+    #[must_use]
+    pub fn covers(&self, x: i64, y: i64) -> bool {
+        self.0.iter().all(|edge| edge.admits(edge.at(x.into(), y.into(), 1)))
+    }
+}
+
 /// Visits the covered pixels of the target, row by row. The edge functions step by exact integers along a row.
 pub(super) fn visit(triangle: &[Vertex; 3], width: u32, height: u32, visit: &mut impl FnMut(u32, u32)) {
     let Some(edges) = edges(triangle) else { return };
@@ -229,6 +247,7 @@ mod tests {
             prop_assume!(twice_area(&t) != 0);
 
             prop_assert_eq!(triangle_covers_at(&t, x, y, 1), covers_by_spans(&t, x, y));
+            prop_assert_eq!(Outline::new(&t).map(|outline| outline.covers(x, y)), Some(covers_by_spans(&t, x, y)));
         }
 
         #[test]

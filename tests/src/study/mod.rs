@@ -1,0 +1,4 @@
+//! What accuracy costs: figures that are measured, not only held.
+
+pub mod coverage;
+pub mod order;
