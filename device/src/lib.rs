@@ -85,6 +85,7 @@ mod pipeline;
 mod probe;
 mod scanout;
 mod shading;
+pub mod subpixel;
 
 /// What the units of the hidden-surface paths are built from, for reports.
 pub mod cost {

@@ -1,0 +1,11 @@
+//! Tests of the sub-pixel mask unit.
+//!
+//! | file | what is tested |
+//! | --- | --- |
+//! | `grid` | samples, bits and places against the manual's numbers |
+//! | `search` | bands, ends and steps against the definition; start corners; where the search is exact, and where not |
+//! | `search_clocked` | registers and clocks against the functional search |
+
+mod grid;
+mod search;
+mod search_clocked;
