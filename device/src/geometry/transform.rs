@@ -32,7 +32,8 @@ pub struct Transform {
     scale: [f64; 3],
     offset: [f64; 3],
     centre: [f64; 2],
-    depth_steps: f64,
+    /// Steps of the depth format, 2^bits.
+    depth_range: f64,
     grid: f64,
     identity: bool,
     flat: bool,
@@ -64,7 +65,7 @@ impl Transform {
             scale: [sx, sy, sz],
             offset: [ox, oy, oz],
             centre: size.map(|s| f64::from(s) / 2.0),
-            depth_steps: f64::from(format.maximum()),
+            depth_range: f64::from(1_u32 << format.bits()),
             grid: f64::from(1_u32 << subpixel_bits),
             flat: !effects.contains(Effects::GOURAUD),
             identity: unit
@@ -167,9 +168,21 @@ impl Transform {
         let to_u = f64::from(PIXEL) / self.grid;
         let grid = |c: f64| (((c * self.grid + ROUND) - ROUND) * to_u) as i32;
         let (x, y) = (grid(screen[0]), grid(screen[1]));
-        let z = (depth.clamp(0.0, 1.0) * self.depth_steps + 0.5) as u32;
+        let z = depth_step(depth.clamp(0.0, 1.0), self.depth_range);
         ScreenVertex { x, y, z, colour, reciprocal_w: reciprocal_w as f32 }
     }
+}
+
+/// floor(`depth` (`range` - 1) + 1/2) without rounding on the way: `range` is a power of two, `depth` in 0..=1 (0 for a
+/// NaN). The product itself can have more bits than an f64, with 31 bits even that of an f32.
+#[inline(always)]
+fn depth_step(depth: f64, range: f64) -> u32 {
+    // depth range + 1/2 - depth; its floor is that of the first but for one step up or down. All of these are exact: a
+    // difference from 1/2 is where it is not negative.
+    let scaled = depth * range;
+    let whole = scaled as u32;
+    let part = scaled - f64::from(whole);
+    whole + u32::from(part - 0.5 >= depth) - u32::from(part < depth - 0.5)
 }
 
 fn matrix(m: &[f32; 16]) -> Matrix {
@@ -185,4 +198,27 @@ fn multiply(a: &Matrix, b: &Matrix) -> Matrix {
 fn apply(m: &Matrix, x: f64, y: f64, z: f64) -> [f64; 4] {
     let column = |c: usize| x * m[0][c] + y * m[1][c] + z * m[2][c] + m[3][c];
     [column(0), column(1), column(2), column(3)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn depth_step_of_31_bits_is_not_rounded_up_on_the_way() {
+        // (2^30 + 256) / 2^31: the product with 2^31 - 1 is 2^30 + 255.5 less 2^-24, plus 1/2 more bits than an f64 has.
+        let depth = f64::from((1_u32 << 30) + 256) / f64::from(1_u32 << 31);
+        assert_eq!(depth_step(depth, f64::from(1_u32 << 31)), (1 << 30) + 255);
+        assert_eq!([0.0, 1.0, f64::NAN].map(|depth| depth_step(depth, f64::from(1_u32 << 31))), [0, 0x7FFF_FFFF, 0]);
+    }
+
+    proptest! {
+        #[test]
+        fn depth_step_any_is_the_floor(mantissa in 0_u64..=1 << 53, down in 0_u32..40, bits in prop::sample::select(vec![16_u32, 24, 31])) {
+            let depth = mantissa as f64 / (1_u64 << 53) as f64 / (1_u64 << down) as f64;
+            let doubled = 2 * u128::from(mantissa) * ((1 << bits) - 1) + (1_u128 << (53 + down));
+            prop_assert_eq!(u128::from(depth_step(depth, f64::from(1_u32 << bits))), doubled >> (54 + down));
+        }
+    }
 }
