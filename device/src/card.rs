@@ -32,7 +32,8 @@ const PIPELINE: Units = Units::GEOMETRY
     .union(Units::ZA)
     .union(Units::SYSTOLIC)
     .union(Units::TILE)
-    .union(Units::SHADING);
+    .union(Units::SHADING)
+    .union(Units::SUBPIXEL);
 /// WATCHDOG counts in units of this many clocks.
 const WATCHDOG_UNIT: u64 = 1 << 20;
 
@@ -113,6 +114,13 @@ impl Board {
                 }
                 Ok(Request::TakeRecorded(answer)) => {
                     let _ = answer.send(self.blocks.pipeline.take_recorded());
+                }
+                Ok(Request::RecordSubpixels(done)) => {
+                    self.blocks.pipeline.record_subpixels();
+                    let _ = done.send(());
+                }
+                Ok(Request::TakeSubpixels(answer)) => {
+                    let _ = answer.send(self.blocks.pipeline.take_subpixels());
                 }
                 Ok(Request::PowerOff) | Err(_) => return false,
             }
@@ -223,6 +231,9 @@ impl Hardware for Wiring<'_> {
         // call for: a unit that every scene needs keeps its memory from one to the next.
         if !powered.intersects(PIPELINE) {
             pipeline.power_off();
+        }
+        if !powered.contains(Units::SUBPIXEL) {
+            pipeline.power_subpixels_off();
         }
         if !powered.contains(Units::BITMAP) {
             bitmap.power_off();

@@ -14,6 +14,7 @@ use crate::probe::account::Account;
 use crate::probe::snapshot::Snapshot;
 use crate::scanout::Scanout;
 use crate::scanout::monitor::Monitor;
+use crate::subpixel::map::SubpixelMap;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::SeqCst;
@@ -132,6 +133,22 @@ impl Card {
     /// [`CardError::PoweredOff`] when the card's thread is gone.
     pub fn take_waves(&self) -> Result<Option<Vec<u8>>, CardError> {
         self.backplane.control.take_recorded()
+    }
+
+    /// Notes which pixels the sub-pixel mask unit takes up in the next scene with a grid (SUBPIXEL_GRID), and why.
+    ///
+    /// # Errors
+    /// [`CardError::PoweredOff`] when the card's thread is gone.
+    pub fn record_subpixels(&self) -> Result<(), CardError> {
+        self.backplane.control.record_subpixels()
+    }
+
+    /// The map noted last, and given away with that; `None` when no scene was noted since.
+    ///
+    /// # Errors
+    /// [`CardError::PoweredOff`] when the card's thread is gone.
+    pub fn take_subpixels(&self) -> Result<Option<SubpixelMap>, CardError> {
+        self.backplane.control.take_subpixels()
     }
 
     /// Puts the card into the state of a snapshot and lets it go on from there. What it was doing is

@@ -39,8 +39,11 @@ pub enum CardError {
         /// Bytes on this card.
         expected: u32,
     },
-    /// The card is in the middle of a scene whose parts it has sorted, not drawn: a snapshot has no place for them.
-    #[error("no snapshot in the middle of a scene on the systolic or tile path: end the scene first")]
+    /// The card is in the middle of a scene whose parts it has sorted, not drawn, or keeps for the sub-pixel unit: a
+    /// snapshot has no place for them.
+    #[error(
+        "no snapshot in the middle of a scene on the systolic or tile path or with a sub-pixel grid: end the scene first"
+    )]
     HeldScene,
     /// The snapshot is whole, but no card can be in this state.
     #[error("impossible state in the snapshot: {what}")]

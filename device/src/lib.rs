@@ -85,7 +85,7 @@ mod pipeline;
 mod probe;
 mod scanout;
 mod shading;
-pub mod subpixel;
+mod subpixel;
 
 /// What the units of the hidden-surface paths are built from, for reports.
 pub mod cost {
@@ -106,3 +106,4 @@ pub use pipeline::Kernel;
 pub use probe::account::Clocks;
 pub use probe::snapshot::Snapshot;
 pub use scanout::monitor::{Frame, Monitor};
+pub use subpixel::map::{Reason, SubpixelMap};

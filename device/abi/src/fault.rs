@@ -63,7 +63,7 @@ faults! {
     Watchdog = 14 "WATCHDOG",
     /// Surfaces that must lie apart overlap.
     Overlap = 15 "OVERLAP",
-    /// A clocked unit that holds its scene back has no room for more primitives in it.
+    /// A unit that holds a scene back (a clocked path, the sub-pixel unit) has no room for more primitives in it.
     SceneFull = 16 "SCENE_FULL",
 }
 

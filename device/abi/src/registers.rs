@@ -200,7 +200,7 @@ registers! {
         3:0 "bits" "4 or 8";
     }
 
-    /// How units that have a clocked model (Za unit, systolic array, tile unit) are simulated. Pixels, counters and clocks do not depend on it.
+    /// How units that have a clocked model (Za unit, systolic array, tile unit, search of the sub-pixel unit) are simulated. Pixels, counters and clocks do not depend on it.
     Fidelity "FIDELITY" @ 0x0248 [1] ReadWrite reset &[0], writable 0x1, w1c 0, {
         0:0 "fidelity" "0 functional, 1 clocked";
     }
@@ -234,7 +234,7 @@ registers! {
     }
     /// How fragments of a pixel that share samples are ordered.
     SubpixelDepth "SUBPIXEL_DEPTH" @ 0x0264 [1] ReadWrite reset &[1], writable 0x3, w1c 0, {
-        1:0 "depth" "0 centre: one depth; 1 search: the range of depths that a search over the mask finds; 2 exhaustive: sample by sample";
+        1:0 "depth" "0 centre: by the depth at the pixel's centre; 1 search: by the range of depths that searches of the mask find, sample by sample where ranges overlap; 2 exhaustive: sample by sample";
     }
     /// Space in which the samples of a pixel are averaged and layers composed.
     SubpixelResolve "SUBPIXEL_RESOLVE" @ 0x0268 [1] ReadWrite reset &[0], writable 0x1, w1c 0, {
@@ -273,7 +273,7 @@ registers! {
         15:8 "green" "";
         7:0 "red" "";
     }
-    /// Object the draws that follow belong to; shown by the probe.
+    /// Object the draws that follow belong to; shown by the probe. The sub-pixel unit merges fragments of one.
     ObjectTag "OBJECT_TAG" @ 0x028C [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {}
     /// First pixel inside the scissor.
     ScissorMinimum "SCISSOR_MINIMUM" @ 0x0290 [1] ReadWrite reset &[0], writable 0x7FFF_7FFF, w1c 0, {

@@ -8,6 +8,7 @@
 use crate::error::CardError;
 use crate::hidden::systolic::Waves;
 use crate::probe::snapshot::State;
+use crate::subpixel::map::SubpixelMap;
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::SeqCst};
 use std::sync::{Arc, OnceLock};
@@ -26,6 +27,10 @@ pub(crate) enum Request {
     Record(Waves, Sender<()>),
     /// Give the waveform that was recorded away.
     TakeRecorded(Sender<Option<Vec<u8>>>),
+    /// Note which pixels the sub-pixel unit takes up in the next scene with a grid.
+    RecordSubpixels(Sender<()>),
+    /// Give what was noted of them away.
+    TakeSubpixels(Sender<Option<SubpixelMap>>),
     /// End the thread.
     PowerOff,
 }
@@ -112,6 +117,22 @@ impl Control {
     /// [`CardError::PoweredOff`].
     pub(crate) fn take_recorded(&self) -> Result<Option<Vec<u8>>, CardError> {
         self.ask(Request::TakeRecorded).ok_or(CardError::PoweredOff)
+    }
+
+    /// Has the pixels noted that the sub-pixel unit takes up in the next scene with a grid.
+    ///
+    /// # Errors
+    /// [`CardError::PoweredOff`].
+    pub(crate) fn record_subpixels(&self) -> Result<(), CardError> {
+        self.ask(Request::RecordSubpixels).ok_or(CardError::PoweredOff)
+    }
+
+    /// The map that was noted last, if there is one.
+    ///
+    /// # Errors
+    /// [`CardError::PoweredOff`].
+    pub(crate) fn take_subpixels(&self) -> Result<Option<SubpixelMap>, CardError> {
+        self.ask(Request::TakeSubpixels).ok_or(CardError::PoweredOff)
     }
 
     /// Tells the card's thread to end.

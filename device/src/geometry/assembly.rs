@@ -32,6 +32,9 @@ pub trait Sink {
     fn line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: u32);
     /// Takes a point.
     fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32);
+    /// Takes the outline of a triangle that is drawn with masks, also of one that lies between pixel centres; what of
+    /// it the hidden-surface path draws comes as a triangle after it.
+    fn masked(&mut self, vertices: &[ScreenVertex; 3]);
     /// Wants no more: what it has must be drawn first.
     fn full(&self) -> bool;
 }
@@ -74,6 +77,17 @@ pub struct Assembler<'a> {
     pub topology: Topology,
     /// Vertices of an indexed draw, transformed once each; `None` stands for one to clip.
     pub shared: Option<&'a [Option<ScreenVertex>]>,
+    /// Primitives are drawn with sub-pixel masks.
+    pub masks: Option<Widths>,
+}
+
+/// What lines and points that are drawn with masks are made of: rectangles and squares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Widths {
+    /// Width of lines, u.
+    pub line: u32,
+    /// Side of points, u.
+    pub point: u32,
 }
 
 impl Assembler<'_> {
@@ -112,6 +126,9 @@ impl Assembler<'_> {
 
     #[inline(always)]
     fn set_up(&self, v: &[ScreenVertex; 3], number: u32, sink: &mut impl Sink) -> bool {
+        if self.masks.is_some() {
+            sink.masked(v);
+        }
         match Triangle::new(v, self.format) {
             Some((triangle, columns)) => {
                 sink.triangle(&triangle, columns, v, number);
@@ -154,6 +171,10 @@ impl Assembler<'_> {
             (Some(a), Some(b)) => Some([a, b]),
             _ => self.clip_line(vertices, counts),
         };
+        if let (Some(widths), Some([a, b])) = (self.masks, &ends) {
+            let faces = rectangle(a, b, widths.line, self.transform.flat_colour());
+            return faces.is_some_and(|faces| self.faces(&faces, number, sink));
+        }
         let set = ends.and_then(|v| Line::new(&v, self.format).map(|line| (v, line)));
         if let Some((v, line)) = &set {
             sink.line(line, v, number);
@@ -178,10 +199,22 @@ impl Assembler<'_> {
     /// A point is inside or it is not: there is nothing to cut.
     fn point(&self, element: usize, number: u32, sink: &mut impl Sink) -> bool {
         let vertex = self.screen(self.fetch.vertex_of(element));
+        if let (Some(widths), Some(v)) = (self.masks, &vertex) {
+            return self.faces(&square(v, widths.point), number, sink);
+        }
         if let Some(v) = &vertex {
             sink.point(&Point { pixel: [v.x >> 8, v.y >> 8], z: v.z as i32 }, v, number);
         }
         vertex.is_some()
+    }
+
+    /// Draws the two triangles of a line or point that is drawn with masks: never discarded, whatever of them the
+    /// hidden-surface path draws.
+    fn faces(&self, faces: &[[ScreenVertex; 3]; 2], number: u32, sink: &mut impl Sink) -> bool {
+        for face in faces {
+            self.set_up(face, number, sink);
+        }
+        true
     }
 
     /// Clipping mixes colours; the first vertex of a flat draw's piece keeps its own.
@@ -196,6 +229,31 @@ impl Assembler<'_> {
             None => self.transform.inside(&self.fetch.vertex(vertex)),
         }
     }
+}
+
+/// The rectangle of a line of a width in u, as two triangles; corners are rounded to u, ties to the even one. A flat one
+/// has the colour of its first end. `None` for a line of no length.
+fn rectangle(a: &ScreenVertex, b: &ScreenVertex, width: u32, flat: bool) -> Option<[[ScreenVertex; 3]; 2]> {
+    let [dx, dy] = [f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y)];
+    if dx == 0.0 && dy == 0.0 {
+        return None;
+    }
+    // Sums and products of these integers are exact in f64; root and quotient are rounded once each.
+    let length = (dx * dx + dy * dy).sqrt();
+    let across = |along: f64| (along * f64::from(width) / (2.0 * length)).round_ties_even() as i32;
+    let (nx, ny) = (across(-dy), across(dx));
+    let b = if flat { ScreenVertex { colour: a.colour, ..*b } } else { *b };
+    let beside = |v: &ScreenVertex, side: i32| ScreenVertex { x: v.x + side * nx, y: v.y + side * ny, ..*v };
+    let [a0, a1, b0, b1] = [beside(a, 1), beside(a, -1), beside(&b, 1), beside(&b, -1)];
+    Some([[a0, a1, b0], [b0, a1, b1]])
+}
+
+/// The square of a point of a size in u, as two triangles; an odd one is longer to the right and down.
+fn square(v: &ScreenVertex, size: u32) -> [[ScreenVertex; 3]; 2] {
+    let [left, top] = [v.x, v.y].map(|c| c - (size >> 1) as i32);
+    let (right, bottom) = (left + size as i32, top + size as i32);
+    let at = |x: i32, y: i32| ScreenVertex { x, y, ..*v };
+    [[at(left, top), at(right, top), at(left, bottom)], [at(right, top), at(right, bottom), at(left, bottom)]]
 }
 
 /// A primitive that is set up.
@@ -280,7 +338,47 @@ impl Sink for List {
     fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32) {
         self.push(Shape::Point(*point, *vertex), &[*vertex], number);
     }
+    fn masked(&mut self, _vertices: &[ScreenVertex; 3]) {}
     fn full(&self) -> bool {
         self.shapes.len() >= LIST_LIMIT || self.pixels >= PIXEL_LIMIT
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(x: i32, y: i32, z: u32, colour: u32) -> ScreenVertex {
+        ScreenVertex { x, y, z, colour, ..ScreenVertex::default() }
+    }
+
+    fn places(faces: &[[ScreenVertex; 3]; 2]) -> [[(i32, i32); 3]; 2] {
+        faces.map(|face| face.map(|v| (v.x, v.y)))
+    }
+
+    #[test]
+    fn rectangle_3_4_5_lies_along_the_line() {
+        // 3, 4 px long; half of 2.5 px across: (-4, 3) / 5 of it.
+        let faces = rectangle(&at(0, 0, 1, 7), &at(768, 1024, 2, 9), 640, false).unwrap();
+        let corners = [(-256, 192), (256, -192), (512, 1216), (1024, 832)];
+        assert_eq!(places(&faces), [[corners[0], corners[1], corners[2]], [corners[2], corners[1], corners[3]]]);
+        assert_eq!(
+            faces.map(|face| face.map(|v| (v.z, v.colour))),
+            [[(1, 7), (1, 7), (2, 9)], [(2, 9), (1, 7), (2, 9)]]
+        );
+    }
+
+    #[test]
+    fn rectangle_flat_has_the_first_ends_colour_and_none_without_length() {
+        let faces = rectangle(&at(0, 0, 1, 7), &at(512, 0, 2, 9), 256, true).unwrap();
+        assert!(faces.as_flattened().iter().all(|v| v.colour == 7));
+        assert!(rectangle(&at(5, 5, 1, 7), &at(5, 5, 2, 9), 256, false).is_none());
+    }
+
+    #[test]
+    fn square_of_odd_size_is_longer_to_the_right_and_down() {
+        let faces = square(&at(100, -20, 9, 3), 5);
+        assert_eq!(places(&faces), [[(98, -22), (103, -22), (98, -17)], [(103, -22), (103, -17), (98, -17)]]);
+        assert!(faces.as_flattened().iter().all(|v| (v.z, v.colour) == (9, 3)));
     }
 }

@@ -71,6 +71,38 @@ impl Line {
     pub fn minor_at(&self, step: i32) -> i32 {
         (self.minor.wrapping_add(i64::from(step - self.steps[0]).wrapping_mul(self.slope)) >> WALK) as i32
     }
+
+    /// Steps of an x-major line inside `columns`, `[first, beyond)`.
+    #[must_use]
+    pub fn steps_inside(&self, columns: [i32; 2]) -> [i32; 2] {
+        [self.steps[0].max(columns[0]), self.steps[1].min(columns[1])]
+    }
+
+    /// Columns drawn on row `y`, `[first, beyond)`: of an x-major line those inside `columns`, of a y-major one the
+    /// pixel of the row, which must be one of its steps.
+    #[must_use]
+    pub fn columns_on_row(&self, y: i32, columns: [i32; 2]) -> [i32; 2] {
+        if self.axis == Axis::Y {
+            let x = self.minor_at(y);
+            return [x, x + 1];
+        }
+        // Rows follow one another along the line, down or up.
+        let steps = self.steps_inside(columns);
+        if self.slope >= 0 {
+            [first_step(steps, |x| self.minor_at(x) >= y), first_step(steps, |x| self.minor_at(x) > y)]
+        } else {
+            [first_step(steps, |x| self.minor_at(x) <= y), first_step(steps, |x| self.minor_at(x) < y)]
+        }
+    }
+}
+
+/// The first step in `[first, beyond)` from which on `reached` holds, or the first beyond.
+fn first_step([mut first, mut beyond]: [i32; 2], reached: impl Fn(i32) -> bool) -> i32 {
+    while first < beyond {
+        let middle = first + (beyond - first) / 2;
+        if reached(middle) { beyond = middle } else { first = middle + 1 }
+    }
+    first
 }
 
 /// The pixel in whose open diamond the moved point lies.

@@ -9,6 +9,7 @@
 //! carry; depths of 31 bits need head room above and have 24.
 
 use super::ratio::round_ratio;
+use super::triangle::doubled_area;
 use super::{CENTRE, PIXEL, ScreenVertex};
 use zga_abi::format::DepthFormat;
 
@@ -160,6 +161,58 @@ impl DepthPlane {
     }
 }
 
+/// A triangle's depth in integers that never wrap: for places that it does not cover, where a steep plane leaves 64 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WidePlane {
+    /// Value at the anchor, rounding bias included; F bits below the point.
+    reference: i128,
+    /// Change for one pixel to the right and down.
+    gradient: [i128; 2],
+    anchor: [i32; 2],
+    fraction: u32,
+    range: [i32; 2],
+}
+
+impl WidePlane {
+    /// The plane of [`DepthPlane::triangle`].
+    #[must_use]
+    pub fn triangle(v: &[ScreenVertex; 3], format: DepthFormat) -> WidePlane {
+        let area = i128::from(doubled_area(&v[0], &v[1], &v[2]));
+        let anchor = least(&least(&v[0], &v[1]), &v[2]);
+        let (x1, y1, z1) = difference(&v[1], &v[0]);
+        let (x2, y2, z2) = difference(&v[2], &v[0]);
+        let sign = area.signum();
+        let a = i128::from(z1 * y2 - z2 * y1) * sign;
+        let b = i128::from(x1 * z2 - x2 * z1) * sign;
+        let fraction = format.fraction();
+        let [px, py] = to_centre(&anchor).map(i128::from);
+        let ratio = |n: i128, shift: u32| ((n << (shift + 1)) + area.abs()).div_euclid(2 * area.abs());
+        let half = if fraction == 0 { 0 } else { 1 << (fraction - 1) };
+        let depths = v.map(|v| v.z as i32);
+        WidePlane {
+            reference: (i128::from(anchor.z) << fraction) + ratio(a * px + b * py, fraction) + half,
+            gradient: [ratio(a, 8 + fraction), ratio(b, 8 + fraction)],
+            anchor: [anchor.x >> 8, anchor.y >> 8],
+            fraction,
+            range: [depths[0].min(depths[1]).min(depths[2]), depths[0].max(depths[1]).max(depths[2])],
+        }
+    }
+
+    /// Signs of the gradients.
+    #[must_use]
+    pub fn signs(&self) -> [i64; 2] {
+        self.gradient.map(|gradient| gradient.signum() as i64)
+    }
+
+    /// Stored depth at a place in pixel (`x`, `y`), `offset` 1/16 pixel from its centre.
+    #[must_use]
+    pub fn stored(&self, x: i32, y: i32, offset: [i32; 2]) -> i32 {
+        let along = |c: usize, pixel: i32| 16 * i128::from(pixel - self.anchor[c]) + i128::from(offset[c]);
+        let value = 16 * self.reference + along(0, x) * self.gradient[0] + along(1, y) * self.gradient[1];
+        (value >> (self.fraction + 4)).clamp(i128::from(self.range[0]), i128::from(self.range[1])) as i32
+    }
+}
+
 /// The (y, x)-least of two vertices; of equal points the nearer one.
 #[inline(always)]
 fn least(a: &ScreenVertex, b: &ScreenVertex) -> ScreenVertex {
@@ -176,4 +229,54 @@ fn to_centre(v: &ScreenVertex) -> [i64; 2] {
 #[inline(always)]
 fn difference(b: &ScreenVertex, a: &ScreenVertex) -> (i64, i64, i64) {
     (i64::from(b.x) - i64::from(a.x), i64::from(b.y) - i64::from(a.y), i64::from(b.z) - i64::from(a.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vertex(range: i32, bits: u32) -> impl Strategy<Value = ScreenVertex> {
+        (-range..=range, -range..=range, 0_u32..1 << bits).prop_map(|(x, y, z)| ScreenVertex {
+            x,
+            y,
+            z,
+            ..ScreenVertex::default()
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn wide_plane_equals_the_plane_at_covered_centres(
+            v in [vertex(4000, 24), vertex(4000, 24), vertex(4000, 24)],
+            fraction in prop::sample::select(vec![0_u32, 8, 24]),
+        ) {
+            let format = DepthFormat::new(24, fraction).unwrap();
+            let area = doubled_area(&v[0], &v[1], &v[2]);
+            prop_assume!(area != 0);
+            let (plane, _) = DepthPlane::triangle(&v, area, 1.0 / area as f64, format);
+            let wide = WidePlane::triangle(&v, format);
+            for (x, y) in (-16..16).flat_map(|x| (-16..16).map(move |y| (x, y))) {
+                if crate::hidden::z_buffer::specification::covers(&v, x, y) {
+                    prop_assert_eq!(wide.stored(x, y, [0, 0]), plane.stored(plane.value(x, y), below(format)));
+                }
+            }
+        }
+
+        #[test]
+        fn wide_plane_at_samples_is_the_plane_of_sixteenths(
+            v in [vertex(20_000, 20), vertex(20_000, 20), vertex(20_000, 20)], x in -40_i32..40, y in -40_i32..40,
+            dx in -7_i32..=7, dy in -7_i32..=7,
+        ) {
+            let format = DepthFormat::default();
+            let area = doubled_area(&v[0], &v[1], &v[2]);
+            prop_assume!(area.abs() > 1 << 20);
+            let (plane, steep) = DepthPlane::triangle(&v, area, 1.0 / area as f64, format);
+            prop_assume!(!steep);
+            let value = 16 * plane.value(x, y) + i64::from(dx) * plane.dx + i64::from(dy) * plane.dy;
+            let wide = WidePlane::triangle(&v, format);
+            prop_assert_eq!(wide.stored(x, y, [dx, dy]), plane.stored(value, below(format) + 4));
+            prop_assert_eq!(wide.signs(), [plane.dx.signum(), plane.dy.signum()]);
+        }
+    }
 }

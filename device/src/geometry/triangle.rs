@@ -71,6 +71,32 @@ impl Triangle {
         Some((triangle, columns))
     }
 
+    /// The edges alone, on a grid whose columns and rows are 2^`pitch` u apart, walked from row `top` on where the
+    /// triangle begins above: so no walk is longer than the rows that are asked for. The plane is left empty. `None` if
+    /// no row of the grid from `top` on, or no column, is met.
+    #[must_use]
+    #[inline(always)]
+    pub fn outline(v: &[ScreenVertex; 3], pitch: [u32; 2], top: i32) -> Option<Triangle> {
+        let [a, b, c] = [v[0].y, v[1].y, v[2].y];
+        let (low, high) = if b < a { (1, 0) } else { (0, 1) };
+        let above = if c < v[low].y { 2 } else { low };
+        let below = if c < v[high].y { high } else { 2 };
+        let (above, middle, below) = (&v[above], &v[3 - above - below], &v[below]);
+        let rows = [above.y, middle.y, below.y].map(|y| first_sample(y, pitch[1]).max(top));
+        let columns =
+            [v[0].x.min(v[1].x).min(v[2].x), v[0].x.max(v[1].x).max(v[2].x)].map(|x| first_sample(x, pitch[0]));
+        if rows[0] == rows[2] || columns[0] == columns[1] || doubled_area(&v[0], &v[1], &v[2]) == 0 {
+            return None;
+        }
+        Some(Triangle {
+            rows,
+            long: Edge::between(above, below, rows[0], pitch),
+            short: [Edge::between(above, middle, rows[0], pitch), Edge::between(middle, below, rows[1], pitch)],
+            plane: DepthPlane::default(),
+            steep: false,
+        })
+    }
+
     /// Columns covered on row `y`, `[first, beyond)`; `y` in `rows[0]..rows[2]`.
     #[must_use]
     #[inline(always)]
@@ -99,17 +125,34 @@ pub fn first_centre(c: i32) -> i32 {
     (c + (PIXEL - 1 - CENTRE)) >> 8
 }
 
+/// First row or column of a grid with a pitch of 2^`pitch` u that is at or beyond `c` u.
+#[must_use]
+#[inline(always)]
+pub fn first_sample(c: i32, pitch: u32) -> i32 {
+    (c + (1 << (pitch - 1)) - 1) >> pitch
+}
+
 impl Edge {
     /// The edge from `a` down to `b`, starting on row `row`, the first whose centre is not above `a`.
     /// An edge that meets no row is never walked; what it holds then means nothing.
     #[inline(always)]
     fn new(a: &ScreenVertex, b: &ScreenVertex, row: i32) -> Edge {
+        Edge::between(a, b, row, [PIXEL.ilog2(); 2])
+    }
+
+    /// The same on a grid whose columns and rows are 2^`pitch` u apart, rows as far as columns or farther, from any row
+    /// that the edge meets on.
+    #[inline(always)]
+    fn between(a: &ScreenVertex, b: &ScreenVertex, row: i32, pitch: [u32; 2]) -> Edge {
+        let [across, down] = pitch.map(|log| 1_i64 << log);
         let (dx, dy) = (i64::from(b.x) - i64::from(a.x), (i64::from(b.y) - i64::from(a.y)).max(1));
         let inverse = 1.0 / dy as f64;
-        let down = i64::from(row * PIXEL + CENTRE - a.y);
-        // ceil((x_crossing - CENTRE) / PIXEL) = floor(n / dy) with n below; both floors nest.
-        let n = ((i64::from(a.x - CENTRE) * dy + down * dx) + (i64::from(PIXEL) * dy - 1)) >> 8;
-        Edge { x: walked(n, dy, inverse), step: walked(dx, dy, inverse) }
+        let below = i64::from(row) * down + down / 2 - i64::from(a.y);
+        // ceil((x_crossing - across / 2) / across) = floor(n / dy) with n below; both floors nest.
+        let n = (((i64::from(a.x) - across / 2) * dy + below * dx) + (across * dy - 1)) >> pitch[0];
+        // From row to row n grows by a whole number, since rows are as far apart as columns or farther.
+        let step = walked(dx << (pitch[1] - pitch[0]), dy, inverse);
+        Edge { x: walked(n, dy, inverse), step }
     }
 
     /// Integer part after `rows` rows.
@@ -148,7 +191,11 @@ mod tests {
 
     /// Coverage by edge functions and the top-left rule, as the rule is written.
     fn covers(v: &[ScreenVertex; 3], x: i32, y: i32) -> bool {
-        let (px, py) = (i128::from(x) * 256 + 128, i128::from(y) * 256 + 128);
+        covers_place(v, i128::from(x) * 256 + 128, i128::from(y) * 256 + 128)
+    }
+
+    /// The same for any place, in u.
+    fn covers_place(v: &[ScreenVertex; 3], px: i128, py: i128) -> bool {
         let mut v = v.map(|v| (i128::from(v.x), i128::from(v.y)));
         let area = (v[1].0 - v[0].0) * (v[2].1 - v[0].1) - (v[1].1 - v[0].1) * (v[2].0 - v[0].0);
         if area == 0 {
@@ -213,6 +260,34 @@ mod tests {
             let c = ScreenVertex { x: mix(a.x, b.x) + d, y: mix(a.y, b.y), ..a };
             let rows = rows.into_iter().map(|s| (f64::from(a.y) + s * (f64::from(b.y) - f64::from(a.y))) as i32 >> 8);
             check(&[a, b, c], rows)?;
+        }
+
+        #[test]
+        fn outline_any_grid_and_top_equals_edge_functions(
+            v in [vertex(1 << 12), vertex(1 << 12), vertex(1 << 12)],
+            pitch in prop::sample::select(vec![[6, 6], [5, 6], [5, 5], [8, 8]]), top in -130_i32..130,
+        ) {
+            let set = Triangle::outline(&v, pitch, top);
+            let place = |c: i32, log: u32| i128::from(c) * (1 << log) + (1 << (log - 1));
+            for y in top..top + 40 {
+                let span = set.filter(|t| (t.rows[0]..t.rows[2]).contains(&y)).map_or([0, 0], |t| t.span(y));
+                for x in [span[0] - 1, span[0], span[1] - 1, span[1], v[0].x >> pitch[0], v[1].x >> pitch[0]] {
+                    let inside = covers_place(&v, place(x, pitch[0]), place(y, pitch[1]));
+                    prop_assert_eq!((span[0]..span[1]).contains(&x), inside, "sample {} {}, span {:?}", x, y, span);
+                }
+            }
+        }
+
+        #[test]
+        fn outline_guard_band_equals_edge_functions(v in [vertex(1 << 23), vertex(1 << 23), vertex(1 << 23)], top in -262_144_i32..262_144) {
+            let set = Triangle::outline(&v, [5, 5], top);
+            for y in (top..top + 128).step_by(9) {
+                let span = set.filter(|t| (t.rows[0]..t.rows[2]).contains(&y)).map_or([0, 0], |t| t.span(y));
+                for x in [span[0] - 1, span[0], span[1] - 1, span[1]] {
+                    let inside = covers_place(&v, i128::from(x) * 32 + 16, i128::from(y) * 32 + 16);
+                    prop_assert_eq!((span[0]..span[1]).contains(&x), inside, "sample {} {}, span {:?}", x, y, span);
+                }
+            }
         }
     }
 }

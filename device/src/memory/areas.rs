@@ -340,6 +340,23 @@ impl Areas {
         Some(*area)
     }
 
+    /// Brings cleared blocks of the scene's frame to memory that lie in one of `places`; `None` is everywhere.
+    pub(crate) fn settle_open(
+        &mut self,
+        parts: &mut Parts<'_>,
+        places: impl Iterator<Item = Option<Rectangle>>,
+        account: &mut Account,
+    ) {
+        let Some(area) = self.ready(parts, account) else {
+            return;
+        };
+        let frame = area.frame();
+        let mut surfaces = area.surfaces(parts.video, parts.za);
+        for place in places {
+            frame.settle(&area.background, place.as_ref(), Settle::All, &mut surfaces).charge(account);
+        }
+    }
+
     /// All of the scene's frame is cleared: no word, no depth and no pixel from before counts. Returns the
     /// area, whose words are to be written now.
     pub(crate) fn clear_all(&mut self, parts: &Parts<'_>, background: Background) -> Option<Area> {

@@ -9,12 +9,13 @@
 
 pub mod bands;
 mod sorted;
+mod subpixel_path;
 mod workers;
 mod za_path;
 
 use crate::geometry::GeometryRegisters;
 use crate::geometry::ScreenVertex;
-use crate::geometry::assembly::{Assembler, GeometryCounts, List};
+use crate::geometry::assembly::{Assembler, GeometryCounts, List, Widths};
 use crate::geometry::fetch::Fetch;
 use crate::geometry::transform::Transform;
 use crate::hidden::systolic::Waves;
@@ -28,12 +29,15 @@ use crate::memory::areas::whole;
 use crate::probe::account::{Account, Clocks};
 use crate::probe::pixel::PixelProbe;
 use crate::shading::plane::Interpolation;
+use crate::subpixel::map::SubpixelMap;
+use crate::subpixel::scene::{Scene, Taken, Taking};
+use crate::subpixel::unit::Unit;
 use bands::{Plane, Sight, Surfaces};
 use fearless_simd::Level;
 use rayon::prelude::*;
 use sorted::Sorted;
 use std::ops::Range;
-use workers::{SHARE, Workers};
+use workers::{SHARE, Wanted, Workers};
 use zga_abi::format::{Fidelity, HiddenSurface, Topology};
 use zga_abi::{Counter, Effects};
 use zga_firmware::Stopped;
@@ -109,6 +113,14 @@ pub struct Pipeline {
     uniform: Option<Uniform>,
     /// The scene of a path that sorts before it draws.
     sorted: Sorted,
+    /// What the sub-pixel unit has of the scene.
+    scene: Scene,
+    /// The sub-pixel unit.
+    unit: Unit,
+    /// The next scene with a grid is to be noted.
+    wants_map: bool,
+    /// The last one that was.
+    map: Option<SubpixelMap>,
 }
 
 impl Pipeline {
@@ -130,12 +142,17 @@ impl Pipeline {
             list: List::default(),
             uniform: None,
             sorted: Sorted::default(),
+            scene: Scene::default(),
+            unit: Unit::default(),
+            wants_map: false,
+            map: None,
         }
     }
 
     /// Begins a scene on `target`.
     pub fn begin_scene(&mut self, memory: &mut VideoMemory, target: &Target, account: &mut Account) {
         self.target = Some(*target);
+        self.scene.begin();
         // Another frame buffer could lie over the Z buffer that is remembered.
         self.uniform = self.uniform.take().filter(|uniform| uniform.is_of(target));
         if target.hidden_surface == HiddenSurface::Za {
@@ -155,6 +172,7 @@ impl Pipeline {
     /// Goes on with a scene on `target` that a snapshot was taken in.
     pub fn resume_scene(&mut self, target: &Target) {
         self.target = Some(*target);
+        self.scene.begin();
         self.uniform = None;
     }
 
@@ -171,14 +189,20 @@ impl Pipeline {
         let Some(target) = self.target.take() else {
             return Ok(());
         };
-        match target.hidden_surface {
-            HiddenSurface::ZBuffer => {}
-            HiddenSurface::Za => memory.parts().1.end_scene(),
+        let begun = account.total();
+        let drawn = match target.hidden_surface {
+            HiddenSurface::ZBuffer | HiddenSurface::Za => Ok(()),
             HiddenSurface::Systolic | HiddenSurface::Tile => {
-                self.sorted.end(memory.drawing(), &target, self.level, account, stop)?;
+                self.sorted.end(memory.drawing(), &target, self.level, account, stop)
             }
+        };
+        let spent = account.total().0 - begun.0;
+        let resolved = drawn
+            .and_then(|()| self.resolve_subpixels(memory, &target, account, &|clocks| stop(Clocks(spent + clocks.0))));
+        if target.hidden_surface == HiddenSurface::Za {
+            memory.parts().1.end_scene();
         }
-        Ok(())
+        resolved
     }
 
     /// Gives scratch memory and threads back. Which blocks are logically cleared is no scratch: it stays.
@@ -188,6 +212,13 @@ impl Pipeline {
         self.list = List::default();
         self.uniform = None;
         self.sorted.power_off();
+        self.power_subpixels_off();
+    }
+
+    /// Gives the sub-pixel unit's memory back.
+    pub fn power_subpixels_off(&mut self) {
+        self.scene = Scene::default();
+        self.unit = Unit::default();
     }
 
     /// Has the clocked systolic array's next scene recorded.
@@ -200,10 +231,21 @@ impl Pipeline {
         self.sorted.recorded.take()
     }
 
+    /// Has the pixels noted that the sub-pixel unit takes up in the next scene with a grid.
+    pub fn record_subpixels(&mut self) {
+        self.wants_map = true;
+    }
+
+    /// The last map noted, given away.
+    pub fn take_subpixels(&mut self) -> Option<SubpixelMap> {
+        self.map.take()
+    }
+
     /// A scene is open whose state a snapshot does not hold.
     #[must_use]
     pub fn holds_scene(&self) -> bool {
-        self.target.is_some_and(|target| target.is_sorted()) && self.sorted.is_used()
+        let sorted = self.target.is_some_and(|target| target.is_sorted()) && self.sorted.is_used();
+        sorted || (self.target.is_some() && !self.scene.items.is_empty())
     }
 
     /// Has the memory count the changes by others to what is remembered of it.
@@ -223,6 +265,7 @@ impl Pipeline {
         let Some(target) = self.target else {
             return;
         };
+        self.take_clear(memory, &target, clear, account);
         match target.hidden_surface {
             HiddenSurface::ZBuffer => self.clear_z_buffer(memory, &target, clear, account),
             HiddenSurface::Za => za_path::clear(memory, &target, clear, account),
@@ -287,7 +330,10 @@ impl Pipeline {
         let transform = Transform::new(geometry, state.effects, size, target.depth_format, target.subpixel_bits);
         let setting = setting(&target, state);
         let begun = account.total();
+        self.keep(memory, &target, account);
         let path = self.path(memory, &target, &setting, account);
+        let masks = state.effects.contains(Effects::ANTI_ALIAS);
+        let masks = masks.then_some(Widths { line: state.line_width, point: state.point_size });
         let fetch = Fetch::new(memory.words(), draw, state.material_colour);
         let primitives = draw.topology.primitives(fetch.elements() as u32);
         if fetch.indexed() {
@@ -296,12 +342,20 @@ impl Pipeline {
         let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity));
         let mut first = 0;
         while first < primitives {
+            if self.scene.full() {
+                return Err(Stopped::SceneFull);
+            }
+            let taken = match target.subpixel {
+                Some(_) => self.scene.draw(state, setting.test, setting.interpolation),
+                None => None,
+            };
             let assembler = Assembler {
                 fetch: Fetch::new(memory.words(), draw, state.material_colour),
                 transform: &transform,
                 format: target.depth_format,
                 topology: draw.topology,
                 shared: draw.indices.is_some().then_some(&self.shared[..]),
+                masks,
             };
             let (before, counts);
             (before, (first, counts)) = (
@@ -309,9 +363,17 @@ impl Pipeline {
                 match fast {
                     Some(_) => {
                         let sorts = if path.is_sorted() { self.sorted.sorts(&target) } else { None };
-                        self.workers.assemble(self.threads, &assembler, setting.scissor, size, first..primitives, sorts)
+                        let wanted = Wanted { sorts, taken };
+                        self.workers.assemble(
+                            self.threads,
+                            &assembler,
+                            setting.scissor,
+                            size,
+                            first..primitives,
+                            wanted,
+                        )
                     }
-                    None => list(&mut self.list, &assembler, setting.scissor, first..primitives),
+                    None => list(&mut self.list, &assembler, setting.scissor, first..primitives, taken),
                 },
             );
             charge_geometry(&counts, draw, account);
@@ -514,10 +576,16 @@ fn setting(target: &Target, state: &DrawState) -> Setting {
 }
 
 /// Assembles primitives into a plain list.
-fn list(list: &mut List, assembler: &Assembler<'_>, scissor: Rectangle, range: Range<u32>) -> (u32, GeometryCounts) {
+fn list(
+    list: &mut List,
+    assembler: &Assembler<'_>,
+    scissor: Rectangle,
+    range: Range<u32>,
+    taken: Option<Taken<'_>>,
+) -> (u32, GeometryCounts) {
     let mut counts = GeometryCounts::default();
     list.reset(scissor);
-    let first = assembler.run(range, list, &mut counts);
+    let first = assembler.run(range, &mut Taking { sink: list, taken }, &mut counts);
     (first, counts)
 }
 

@@ -8,6 +8,7 @@ use crate::geometry::triangle::Triangle;
 use crate::hidden::tile::closed_form::Sorts;
 use crate::hidden::z_buffer::band::Scratch;
 use crate::hidden::z_buffer::bins::Bins;
+use crate::subpixel::scene::{Item, Taken, Taking};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -28,7 +29,18 @@ pub(super) struct Workers {
     shares: Vec<Bins>,
     /// What shares beyond the first note for the tile unit.
     noted: Vec<Sorts>,
+    /// What shares beyond the first take for the sub-pixel unit.
+    taken: Vec<Vec<Item>>,
     scratch: Vec<Mutex<Scratch>>,
+}
+
+/// Who takes primitives beside the bins.
+#[derive(Debug)]
+pub(super) struct Wanted<'a> {
+    /// The tile unit's sorts.
+    pub(super) sorts: Option<&'a mut Sorts>,
+    /// The sub-pixel unit.
+    pub(super) taken: Option<Taken<'a>>,
 }
 
 /// Bins that take primitives, and the tile unit's sorts where they are wanted.
@@ -62,6 +74,8 @@ impl Sink for Share<'_> {
         }
     }
 
+    fn masked(&mut self, _vertices: &[ScreenVertex; 3]) {}
+
     #[inline(always)]
     fn full(&self) -> bool {
         self.bins.full()
@@ -82,7 +96,7 @@ impl Workers {
     }
 
     /// Assembles primitives from `range.start` on into the shares' bins, for a target of `size` pixels of
-    /// which `scissor` may change; returns the first not assembled. `sorts` notes those assembled.
+    /// which `scissor` may change; returns the first not assembled. `wanted` notes those assembled.
     pub(super) fn assemble(
         &mut self,
         threads: usize,
@@ -90,8 +104,9 @@ impl Workers {
         scissor: Rectangle,
         size: [u32; 2],
         range: Range<u32>,
-        mut sorts: Option<&mut Sorts>,
+        wanted: Wanted<'_>,
     ) -> (u32, GeometryCounts) {
+        let Wanted { mut sorts, mut taken } = wanted;
         let count = (range.end - range.start).min(BATCH);
         let used = if self.pool_for(threads, count >= 2 * SHARE).is_some() { threads } else { 1 };
         self.shares.resize_with(used.max(self.shares.len()), Bins::default);
@@ -108,16 +123,25 @@ impl Workers {
             });
         }
         let mut noted = sorts.as_deref_mut().into_iter().chain(&mut self.noted);
+        self.taken.resize_with((used - 1).max(self.taken.len()), Vec::new);
+        self.taken.iter_mut().for_each(Vec::clear);
+        let mut takers = Vec::new();
+        if let Some(Taken { items, draw, masked, translucent }) = &mut taken {
+            let all = std::iter::once(&mut **items).chain(&mut self.taken).take(used);
+            takers.extend(all.map(|items| Taken { items, draw: *draw, masked: *masked, translucent: *translucent }));
+        }
+        let mut takers = takers.into_iter();
         let each = count.div_ceil(used as u32);
-        let fill = |(number, mut share): (usize, Share<'_>)| {
+        let fill = |(number, (mut share, taken)): (usize, (Share<'_>, Option<Taken<'_>>))| {
             let from = range.start + (each * number as u32).min(count);
             let to = range.start + (each * (number as u32 + 1)).min(count);
             let mut counts = GeometryCounts::default();
             empty(share.bins);
-            let first = assembler.run(from..to, &mut share, &mut counts);
+            let first = assembler.run(from..to, &mut Taking { sink: &mut share, taken }, &mut counts);
             (first, to, counts)
         };
-        let shares = self.shares[..used].iter_mut().map(|bins| Share { bins, sorts: noted.next() }).enumerate();
+        let shares =
+            self.shares[..used].iter_mut().map(|bins| (Share { bins, sorts: noted.next() }, takers.next())).enumerate();
         let done: Vec<_> = match &self.pool {
             Some(pool) if used > 1 => {
                 let shares: Vec<_> = shares.collect();
@@ -138,6 +162,9 @@ impl Workers {
         }
         if let Some(sorts) = sorts {
             self.noted.iter().take(whole - 1).for_each(|more| sorts.merge(more));
+        }
+        if let Some(Taken { items, .. }) = taken {
+            self.taken.iter().take(whole - 1).for_each(|more| items.extend_from_slice(more));
         }
         (end, sum)
     }

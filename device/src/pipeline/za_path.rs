@@ -5,8 +5,9 @@ use crate::hidden::za::{self, Background, ZaDraw};
 use crate::memory::VideoMemory;
 use crate::memory::areas::whole;
 use crate::probe::account::Account;
+use crate::subpixel::band::Resolved;
 use zga_abi::Counter;
-use zga_firmware::checked::{Clear, Target};
+use zga_firmware::checked::{Clear, Rectangle, Target};
 
 /// A draw to the scene's frame, whose words are exact now.
 pub(super) fn draw(
@@ -50,6 +51,23 @@ pub(super) fn clear(memory: &mut VideoMemory, target: &Target, clear: &Clear, ac
     };
     let cleared = mine.clear_rectangle(&mut parts, &area, clear.colour.map(pixel), clear.depth.map(|d| d as i32));
     cleared.charge(account);
+}
+
+/// Brings all cleared blocks of the scene's frame to memory.
+pub(super) fn settle(memory: &mut VideoMemory, account: &mut Account) {
+    let (mut parts, areas) = memory.parts();
+    areas.settle_open(&mut parts, std::iter::once(None), account);
+}
+
+/// Brings the cleared blocks of the scene's frame to memory in which pixels are about to be written.
+pub(super) fn settle_pixels(memory: &mut VideoMemory, pixels: &[Resolved], account: &mut Account) {
+    let (mut parts, areas) = memory.parts();
+    let written = pixels.iter().filter(|pixel| !pixel.is_degraded());
+    let places = written.map(|pixel| {
+        let (x, y) = (u32::from(pixel.x), u32::from(pixel.y));
+        Some(Rectangle { x, y, right: x + 1, bottom: y + 1 })
+    });
+    areas.settle_open(&mut parts, places, account);
 }
 
 /// Depth of pixel (`x`, `y`) if its block in the scene's frame is logically cleared.

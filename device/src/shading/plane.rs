@@ -101,6 +101,33 @@ impl ColourSource {
         self.colour[0]
     }
 
+    /// Colour of a triangle at a place that it covers, `[x, y]` in u: for fragments whose pixel's centre lies outside.
+    /// The reference in f64, with the clamp and the rounding of the planes.
+    #[must_use]
+    pub fn colour_at(&self, place: [i32; 2], interpolation: Interpolation) -> u32 {
+        let flat = self.colour[0] == self.colour[1] && self.colour[0] == self.colour[2];
+        if interpolation == Interpolation::Flat || flat {
+            return self.flat();
+        }
+        // Differences of coordinates have 25 bits, their products 50: exact in f64.
+        let [x0, y0] = self.position[0].map(f64::from);
+        let along = |[x, y]: [i32; 2]| (f64::from(x) - x0, f64::from(y) - y0);
+        let ((x1, y1), (x2, y2), (px, py)) = (along(self.position[1]), along(self.position[2]), along(place));
+        let inverse = 1.0 / (x1 * y2 - y1 * x2);
+        let mut share = [(px * y2 - py * x2) * inverse, (x1 * py - y1 * px) * inverse];
+        if interpolation == Interpolation::Perspective {
+            let weights = [(1.0 - share[0] - share[1]), share[0] * self.relative_w(1), share[1] * self.relative_w(2)];
+            let inverse = 1.0 / (weights[0] + weights[1] + weights[2]);
+            share = [weights[1] * inverse, weights[2] * inverse];
+        }
+        let [a, b, c] = self.colour.map(|colour| colour.to_le_bytes().map(f64::from));
+        let levels: [u8; 4] = std::array::from_fn(|k| {
+            let value = a[k] + share[0] * (b[k] - a[k]) + share[1] * (c[k] - a[k]);
+            (value.max(a[k].min(b[k]).min(c[k])).min(a[k].max(b[k]).max(c[k])) + 0.5) as u8
+        });
+        u32::from_le_bytes(levels)
+    }
+
     /// 1 / w of vertex `n` relative to vertex 0: keeps planes in range for any w.
     pub(super) fn relative_w(&self, n: usize) -> f64 {
         f64::from(self.reciprocal_w[n]) / f64::from(self.reciprocal_w[0])
@@ -302,5 +329,42 @@ impl PerspectivePlane {
         // max and min put the range's ends where a division by 0 gives a NaN.
         let channel = |k: usize| ((value(k) / divisor).max(self.minimum[k]).min(self.maximum[k]) + 0.5) as u32;
         channel(0) | (channel(1) << 8) | (channel(2) << 16) | (channel(3) << 24)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hidden::z_buffer::specification::covers;
+    use proptest::prelude::*;
+
+    fn vertex() -> impl Strategy<Value = ScreenVertex> {
+        (-4000_i32..4000, -4000_i32..4000, any::<u32>(), 0.1_f32..4.0)
+            .prop_map(|(x, y, colour, reciprocal_w)| ScreenVertex { x, y, z: 0, colour, reciprocal_w })
+    }
+
+    proptest! {
+        #[test]
+        fn colour_at_centres_is_the_planes_colour(v in [vertex(), vertex(), vertex()], perspective in any::<bool>()) {
+            let interpolation = if perspective { Interpolation::Perspective } else { Interpolation::Affine };
+            let source = ColourSource::new(&v);
+            for (x, y) in (-16..16).flat_map(|x| (-16..16).map(move |y| (x, y))).filter(|&(x, y)| covers(&v, x, y)) {
+                let found = source.colour_at([x * 256 + 128, y * 256 + 128], interpolation).to_le_bytes();
+                let plane = ColourPlane::triangle(&source, interpolation).colour(x, y).to_le_bytes();
+                // Both round half up; the plane is good for a quarter of a level before that, f64 for 2^-40.
+                prop_assert!(found.iter().zip(plane).all(|(a, b)| a.abs_diff(b) <= 1), "{:?} {:?} at {} {}", found, plane, x, y);
+            }
+        }
+    }
+
+    #[test]
+    fn colour_at_a_vertex_is_the_vertexs() {
+        let at = |x, y, colour| ScreenVertex { x, y, z: 0, colour, reciprocal_w: 0.5 };
+        let v = [at(0, 0, 0x0102_0304), at(700, 10, 0xFF00_80FE), at(30, 900, 0x7F7F_7F7F)];
+        for interpolation in [Interpolation::Affine, Interpolation::Perspective] {
+            let colours = v.map(|vertex| ColourSource::new(&v).colour_at([vertex.x, vertex.y], interpolation));
+            assert_eq!(colours, v.map(|vertex| vertex.colour));
+        }
+        assert_eq!(ColourSource::new(&v).colour_at([700, 10], Interpolation::Flat), 0x0102_0304);
     }
 }

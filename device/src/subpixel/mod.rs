@@ -1,15 +1,187 @@
-//! The sub-pixel mask unit.
+//! The sub-pixel mask unit: anti-aliasing that costs only where edges are.
 //!
 //! Source: JP 2569952 B2 (1990).
+//!
+//! The hidden-surface path draws a scene with a grid as ever, one sample at each pixel's centre. At END_SCENE this unit
+//! overwrites the pixels that are *active*: those where, of all that no opaque fragment covering the whole pixel hides,
+//! something covers a part, or is translucent, or two cover the whole. All others keep what the path drew, which is
+//! the same. So every path gives one picture, and a pixel inside a triangle costs nothing here.
 //!
 //! | file | part |
 //! | --- | --- |
 //! | [`grid`] | samples of a pixel, bits of a mask |
+//! | [`scene`] | what is drawn, taken while the path draws it |
+//! | [`piece`] | an item set up for a band of lines: edges, depth bounds, depths at samples |
+//! | `bands` | items sorted into bands of lines |
+//! | [`band`] | masks of a band, active pixels and their lists of fragments |
+//! | `cover` | what is covered on its lines |
+//! | `hide` | what of it is hidden by what covers whole pixels |
+//! | [`specification`] | the same by definition, pixel by pixel |
 //! | [`search`](mod@search) | the nearest or the farthest sub-pixel of a mask |
 //! | [`search_clocked`] | the same as registers and clocks |
+//! | [`pixel`] | one pixel: its fragments are ordered, merged, packed and averaged |
+//! | `parts` | which opaque fragment is seen at each sample; the mean |
+//! | `layers` | translucent fragments over them |
+//! | `shader` | colours of fragments |
+//! | [`gamma`] | linear light |
+//! | [`unit`] | bands on threads; writes the frame |
+//! | [`map`] | an instrument: which pixels were taken up, and why |
+//!
+//! # Clocks
+//! 1 a mask (one is made for each pixel that a triangle covers in part, or of which it covers the centre alone, and in which
+//! nothing that covers the whole pixel hides it, and one for each triangle, in which its edges begin), 1 a band of samples searched, 1 a depth evaluated, 1 a merge, 1 a fragment packed, 1 an active pixel
+//! averaged and written; a colour is 1 clock of the shading unit. Lists are written while masks are made.
+//!
+//! # Memory
+//! The lists of one line of pixels lie in a pool of SUBPIXEL_POOL fragments of [`FRAGMENT_BYTES`] bytes. Pixels get
+//! their lists from left to right; one whose list does not fit keeps the path's pixel, one sample, and is counted in
+//! subpixel.pixels_degraded.
 
+pub mod band;
+mod bands;
+mod cover;
+pub mod gamma;
 pub mod grid;
+mod hide;
+mod layers;
+pub mod map;
+mod parts;
+pub mod piece;
+pub mod pixel;
+pub mod scene;
 pub mod search;
 pub mod search_clocked;
+mod shader;
+pub mod specification;
 #[cfg(test)]
 mod tests;
+pub mod unit;
+
+use crate::probe::account::{Account, Clocks};
+use grid::Grid;
+use scene::Rule;
+use zga_abi::Counter;
+use zga_abi::format::{DepthFormat, Fidelity, SubpixelDepth, SubpixelGrid, SubpixelResolve};
+use zga_firmware::checked::Target;
+
+/// Bytes of a fragment in the pool: its mask, its pixel, its primitive.
+pub const FRAGMENT_BYTES: u64 = 16;
+
+/// What all pixels of a scene share.
+#[derive(Clone, Copy, Debug)]
+pub struct Setting {
+    /// Samples of a pixel.
+    pub grid: Grid,
+    /// log2 of the distance of samples in x and y, u.
+    pub pitch: [u32; 2],
+    /// How fragments are ordered.
+    pub depth: SubpixelDepth,
+    /// Where samples are averaged.
+    pub resolve: SubpixelResolve,
+    /// Searches are stepped clock by clock.
+    pub clocked: bool,
+    /// Fragments of a line.
+    pub pool: u32,
+    /// Number format of depth.
+    pub format: DepthFormat,
+    /// From what the order of opaque fragments follows.
+    pub rule: Rule,
+    /// Width and height of the target.
+    pub size: [u32; 2],
+}
+
+impl Setting {
+    /// The setting of a scene on `target`; `None` without a grid.
+    #[must_use]
+    pub fn new(target: &Target, rule: Rule) -> Option<Setting> {
+        let setting = target.subpixel?;
+        let grid = match setting.grid {
+            SubpixelGrid::Off => return None,
+            SubpixelGrid::Grid4x4 => Grid::G4X4,
+            SubpixelGrid::Grid8x4 => Grid::G8X4,
+            SubpixelGrid::Grid8x8 => Grid::G8X8,
+        };
+        Some(Setting {
+            grid,
+            pitch: [8 - grid.columns().ilog2(), 8 - grid.rows().ilog2()],
+            depth: setting.depth,
+            resolve: setting.resolve,
+            clocked: target.fidelity == Fidelity::Clocked,
+            pool: setting.pool,
+            format: target.depth_format,
+            rule,
+            size: [target.colour.width, target.colour.height],
+        })
+    }
+}
+
+/// Events of the unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Masks made.
+    pub masks: u64,
+    /// Searches begun.
+    pub searches: u64,
+    /// Bands of samples that searches looked at.
+    pub steps: u64,
+    /// Depths evaluated at samples.
+    pub evaluations: u64,
+    /// Fragments merged with another of their tag.
+    pub merges: u64,
+    /// Fragments packed.
+    pub packed: u64,
+    /// Pixels taken up.
+    pub active: u64,
+    /// Fragments stored.
+    pub fragments: u64,
+    /// Pixels that the pool had no room for.
+    pub degraded: u64,
+    /// Most fragments of a line.
+    pub most: u64,
+    /// Colours interpolated.
+    pub shaded: u64,
+}
+
+impl crate::pipeline::bands::Counts for Counts {
+    fn plus(self, other: Counts) -> Counts {
+        Counts {
+            masks: self.masks + other.masks,
+            searches: self.searches + other.searches,
+            steps: self.steps + other.steps,
+            evaluations: self.evaluations + other.evaluations,
+            merges: self.merges + other.merges,
+            packed: self.packed + other.packed,
+            active: self.active + other.active,
+            fragments: self.fragments + other.fragments,
+            degraded: self.degraded + other.degraded,
+            most: self.most.max(other.most),
+            shaded: self.shaded + other.shaded,
+        }
+    }
+}
+
+impl Counts {
+    /// Clocks of the unit, without shading.
+    #[must_use]
+    pub fn clocks(&self) -> Clocks {
+        Clocks(self.masks + self.steps + self.evaluations + self.merges + self.packed + self.active)
+    }
+}
+
+/// Charges the events of a scene.
+pub fn charge(counts: &Counts, account: &mut Account) {
+    account.add(Counter::SubpixelMasks, counts.masks);
+    account.add(Counter::SubpixelSearches, counts.searches);
+    account.add(Counter::SubpixelSearchSteps, counts.steps);
+    account.add(Counter::SubpixelDepthEvaluations, counts.evaluations);
+    account.add(Counter::SubpixelMerges, counts.merges);
+    account.add(Counter::SubpixelPacked, counts.packed);
+    account.add(Counter::SubpixelPixelsActive, counts.active);
+    account.add(Counter::SubpixelFragments, counts.fragments);
+    account.add(Counter::SubpixelPixelsDegraded, counts.degraded);
+    account.maximum(Counter::SubpixelPoolPeakBytes, counts.most * FRAGMENT_BYTES);
+    account.add(Counter::ColourWrites, counts.active);
+    account.charge(Counter::CyclesSubpixel, counts.clocks());
+    account.add(Counter::ShadingPixels, counts.shaded);
+    account.charge(Counter::CyclesShading, Clocks(counts.shaded));
+}

@@ -35,6 +35,7 @@
 //! Clocks: one for each band looked at, one for each depth evaluated; [`super::search_clocked`] steps them.
 
 use super::grid::{Grid, Offset};
+#[cfg(test)]
 use crate::probe::account::Clocks;
 
 /// Entries of a table of bands: 15 bands of the largest grid, and none.
@@ -147,6 +148,7 @@ const fn offsets() -> [[Offset; 64]; 3] {
 }
 
 /// The search mask of a band; 0 past the last band of the grid.
+#[cfg(test)]
 #[must_use]
 pub fn search_mask(grid: Grid, corner: Corner, band: u32) -> u64 {
     SEARCH_MASKS[grid.index()][corner as usize].get(band as usize).copied().unwrap_or(0)
@@ -182,6 +184,7 @@ impl Found {
 
 /// Searches a mask band by band: the specification of [`search`]. `None` where the mask covers nothing. Bits that are
 /// no samples of the grid do not count.
+#[cfg(test)]
 #[must_use]
 pub fn search_by_bands(grid: Grid, mask: u64, corner: Corner) -> Option<Found> {
     let bands = grid.columns() + grid.rows() - 1;
@@ -230,6 +233,7 @@ pub struct Evaluated {
 
 impl Evaluated {
     /// Clocks of the unit: one a band looked at, one a depth evaluated.
+    #[cfg(test)]
     #[must_use]
     pub const fn clocks(&self) -> Clocks {
         Clocks((self.steps + self.evaluations) as u64)

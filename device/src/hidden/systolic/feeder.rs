@@ -191,17 +191,12 @@ fn rows(item: &Item, draws: &[HeldDraw]) -> Range<u32> {
     }
 }
 
-/// Steps of an x-major line inside an area.
-fn steps_inside(line: &Line, area: &Rectangle) -> [i32; 2] {
-    [line.steps[0].max(area.x as i32), line.steps[1].min(area.right as i32)]
-}
-
 /// Rows that a line draws, those outside `area` as they come.
 fn line_rows(line: &Line, area: &Rectangle) -> [i32; 2] {
     if line.axis == Axis::Y {
         return line.steps;
     }
-    let [first, beyond] = steps_inside(line, area);
+    let [first, beyond] = line.steps_inside([area.x as i32, area.right as i32]);
     if first >= beyond {
         return [0, 0];
     }
@@ -214,29 +209,8 @@ fn columns(shape: &Shape, area: &Rectangle, y: i32) -> [i32; 2] {
     match shape {
         Shape::Triangle(triangle, _) => triangle.span(y),
         Shape::Point(point, _) => [point.pixel[0], point.pixel[0] + 1],
-        Shape::Line(line, _) if line.axis == Axis::Y => {
-            let x = line.minor_at(y);
-            [x, x + 1]
-        }
-        Shape::Line(line, _) => {
-            // Rows follow one another along the line, down or up.
-            let steps = steps_inside(line, area);
-            if line.slope >= 0 {
-                [first_step(steps, |x| line.minor_at(x) >= y), first_step(steps, |x| line.minor_at(x) > y)]
-            } else {
-                [first_step(steps, |x| line.minor_at(x) <= y), first_step(steps, |x| line.minor_at(x) < y)]
-            }
-        }
+        Shape::Line(line, _) => line.columns_on_row(y, [area.x as i32, area.right as i32]),
     }
-}
-
-/// The first step in `[first, beyond)` from which on `reached` holds, or the first beyond.
-fn first_step([mut first, mut beyond]: [i32; 2], reached: impl Fn(i32) -> bool) -> i32 {
-    while first < beyond {
-        let middle = first + (beyond - first) / 2;
-        if reached(middle) { beyond = middle } else { first = middle + 1 }
-    }
-    first
 }
 
 /// The colour of a shape without interpolation.

@@ -263,6 +263,8 @@ impl Sorts {
 }
 
 impl Sink for Sorts {
+    fn masked(&mut self, _vertices: &[ScreenVertex; 3]) {}
+
     #[inline(always)]
     fn triangle(&mut self, _triangle: &Triangle, _columns: [i32; 2], v: &[ScreenVertex; 3], _number: u32) {
         let x = [v[0].x.min(v[1].x).min(v[2].x), v[0].x.max(v[1].x).max(v[2].x)];

@@ -142,6 +142,8 @@ impl Bins {
 }
 
 impl Sink for Bins {
+    fn masked(&mut self, _vertices: &[ScreenVertex; 3]) {}
+
     #[inline(always)]
     fn triangle(&mut self, t: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], _number: u32) {
         let area = self.area;

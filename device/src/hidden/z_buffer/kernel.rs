@@ -19,7 +19,7 @@ use std::ops::Range;
 pub const LANES: usize = 16;
 
 /// Numbers of the lanes.
-const LANE: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+pub(crate) const LANE: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 /// Depth test `less`, depth written.
 pub const LESS: u8 = 0;
@@ -31,14 +31,14 @@ pub const NO_DEPTH: u8 = 2;
 pub const WIDE: u8 = 3;
 
 /// Lane k's share of a value that grows from lane to lane: k steps in two halves.
-pub(in crate::hidden) struct Steps<S: Simd> {
+pub(crate) struct Steps<S: Simd> {
     high: i32x16<S>,
     low: u32x16<S>,
 }
 
 impl<S: Simd> Steps<S> {
     #[inline(always)]
-    pub(in crate::hidden) fn new(simd: S, step: i64) -> Self {
+    pub(crate) fn new(simd: S, step: i64) -> Self {
         let lane = u32x16::from_slice(simd, &LANE);
         // k * low as 64 bits from 16-bit pieces: k < 16 leaves room in 32.
         let (low, high) = (step as u32, (step >> 32) as u32);
@@ -49,7 +49,7 @@ impl<S: Simd> Steps<S> {
 
     /// Upper halves of `value` + k steps.
     #[inline(always)]
-    fn upper(&self, simd: S, value: i64) -> i32x16<S> {
+    pub(crate) fn upper(&self, simd: S, value: i64) -> i32x16<S> {
         let base = u32x16::splat(simd, value as u32);
         let carried = (base + self.low).simd_lt(base);
         let high = self.high + i32x16::splat(simd, (value >> 32) as i32);
@@ -59,7 +59,7 @@ impl<S: Simd> Steps<S> {
     /// Columns of an edge on [`LANES`] rows, counted from column `x`: the integer part of a walk lies in
     /// the upper half of its 64 bits.
     #[inline(always)]
-    fn columns(&self, simd: S, walk: i64, x: i32) -> i32x16<S> {
+    pub(crate) fn columns(&self, simd: S, walk: i64, x: i32) -> i32x16<S> {
         (self.upper(simd, walk) >> (WALK - 32)) - x
     }
 }

@@ -1,0 +1,95 @@
+//! What a scene takes, and by which rule its opaque fragments are ordered.
+
+use super::super::scene::{Base, ITEM_LIMIT, Item, Kind, Rule, Scene};
+use crate::geometry::ScreenVertex;
+use crate::hidden::z_buffer::DepthTest;
+use crate::shading::plane::Interpolation;
+use zga_abi::Effects;
+use zga_abi::format::DepthFunction;
+use zga_firmware::checked::{Clear, DrawState, Rectangle};
+
+const AREA: Rectangle = Rectangle { x: 0, y: 0, right: 8, bottom: 8 };
+
+fn state(effects: Effects, tag: u32) -> DrawState {
+    DrawState {
+        effects,
+        depth_function: DepthFunction::Less,
+        depth_write: true,
+        material_colour: 0,
+        tag,
+        scissor: AREA,
+        line_width: 256,
+        point_size: 256,
+    }
+}
+
+/// Takes one triangle with an alpha.
+fn draw(scene: &mut Scene, effects: Effects, test: Option<DepthTest>, alpha: u32) {
+    if let Some(taken) = scene.draw(&state(effects, 0), test, Interpolation::Flat) {
+        let vertices = [ScreenVertex { colour: alpha << 24, ..ScreenVertex::default() }; 3];
+        taken.items.push(Item { vertices, draw: taken.draw, kind: Kind::Masked });
+    }
+}
+
+fn rule(draws: &[(Effects, Option<DepthTest>, u32)]) -> Rule {
+    let mut scene = Scene::default();
+    draws.iter().for_each(|&(effects, test, alpha)| draw(&mut scene, effects, test, alpha));
+    scene.rule()
+}
+
+#[test]
+fn rule_is_nearest_last_or_in_order() {
+    let (masks, blend) = (Effects::ANTI_ALIAS, Effects::BLEND);
+    let less = Some(DepthTest::LESS);
+    let less_equal = Some(DepthTest { equal: true, ..DepthTest::LESS });
+    let greater = Some(DepthTest { greater: true, less: false, ..DepthTest::LESS });
+    let unwritten = Some(DepthTest { write: false, ..DepthTest::LESS });
+
+    assert_eq!(rule(&[(masks, less, 255), (masks, less_equal, 255)]), Rule::Nearest);
+    assert_eq!(rule(&[(masks, None, 255), (masks, None, 255)]), Rule::Last);
+    assert_eq!(rule(&[(masks, None, 255), (masks, less, 255)]), Rule::InOrder);
+    assert_eq!(rule(&[(masks, greater, 255)]), Rule::InOrder);
+    assert_eq!(rule(&[(masks, unwritten, 255)]), Rule::InOrder);
+    // Translucent, it stores nothing and may say so; opaque, it must store.
+    assert_eq!(rule(&[(masks, less, 255), (blend, unwritten, 128)]), Rule::Nearest);
+    assert_eq!(rule(&[(masks, less, 255), (blend, unwritten, 255)]), Rule::InOrder);
+}
+
+#[test]
+fn clear_of_everything_forgets_and_of_a_part_is_an_item() {
+    let mut scene = Scene::default();
+    draw(&mut scene, Effects::ANTI_ALIAS, Some(DepthTest::LESS), 255);
+    let part = Clear { area: Rectangle { right: 3, ..AREA }, colour: Some(5), depth: None };
+    scene.clear(&part, false, false);
+    assert_eq!((scene.items.len(), scene.items[1].kind, scene.rule()), (2, Kind::Clear, Rule::InOrder));
+
+    scene.clear(&Clear { area: AREA, colour: Some(6), depth: Some(7) }, true, true);
+    assert_eq!((scene.items.len(), &scene.colour, &scene.depth), (0, &Base::Uniform(6), &Base::Uniform(7)));
+    assert!(scene.called, "what a draw has called for stays called for");
+    draw(&mut scene, Effects::empty(), None, 255);
+    assert_eq!(scene.rule(), Rule::Last);
+}
+
+#[test]
+fn draws_that_leave_no_item_take_no_room() {
+    let mut scene = Scene::default();
+    for tag in 0..1000 {
+        assert!(scene.draw(&state(Effects::ANTI_ALIAS, tag), Some(DepthTest::LESS), Interpolation::Flat).is_some());
+    }
+    assert_eq!(scene.draws.len(), 1);
+    let never = DrawState { depth_function: DepthFunction::Never, ..state(Effects::ANTI_ALIAS, 0) };
+    let test = Some(DepthTest::new(DepthFunction::Never, true));
+    assert!(scene.draw(&never, test, Interpolation::Flat).is_none());
+}
+
+#[test]
+fn clear_beyond_the_limit_overflows_and_keeps_what_is_there() {
+    let mut scene = Scene::default();
+    draw(&mut scene, Effects::ANTI_ALIAS, Some(DepthTest::LESS), 255);
+    let item = scene.items[0];
+    scene.items.resize(ITEM_LIMIT, item);
+    let part = Clear { area: Rectangle { right: 3, ..AREA }, colour: Some(5), depth: None };
+    scene.clear(&part, false, false);
+    assert!(scene.overflowed && scene.full());
+    assert_eq!(scene.items.len(), ITEM_LIMIT);
+}
