@@ -28,8 +28,8 @@ const ZOOM_STEP: f64 = 0.92;
 /// Longest wait for a frame: scan-out gives one every 17 ms.
 const FRAME_WAIT: Duration = Duration::from_millis(50);
 /// What the keys do.
-const HELP: &str = "drag: orbit, wheel: zoom, P path, F fidelity, A anti-aliasing, V view, D decals, W wireframe, Space animation, S save, \
-     Esc end";
+const HELP: &str = "drag: orbit, wheel: zoom, P path, F fidelity, A anti-aliasing, V view of path or samples, D decals, \
+     W wireframe, Space animation, S save, Esc end";
 
 /// A window for a picture of this size; none where there is no display.
 pub(crate) fn open(name: &str, size: [u32; 2]) -> Option<Window> {
@@ -47,8 +47,8 @@ pub(crate) struct Show<'a> {
     pub save: &'a dyn Fn(u32) -> PathBuf,
     /// How it is looked at first.
     pub look: Look,
-    /// A view of the path is painted over it at first.
-    pub view: bool,
+    /// What is painted over it at first.
+    pub view: Option<View>,
 }
 
 /// Keys in the order in which they went down. A key that is down and up again while a frame is drawn is among them, which
@@ -84,6 +84,17 @@ impl InputCallback for Taps {
     }
 }
 
+/// What is painted over the picture. A view of the path follows the path, and that of the samples the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Over {
+    /// Nothing.
+    Nothing,
+    /// What the path knows; where it knows nothing, what the sub-pixel unit took up.
+    Path,
+    /// What the sub-pixel unit took up.
+    Samples,
+}
+
 /// What mouse and keys have set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Controls {
@@ -95,7 +106,7 @@ struct Controls {
     frame: u32,
     animated: bool,
     help: bool,
-    view: bool,
+    over: Over,
 }
 
 impl Show<'_> {
@@ -117,7 +128,11 @@ impl Show<'_> {
             frame: 0,
             animated: false,
             help: false,
-            view: self.view,
+            over: match self.view {
+                None => Over::Nothing,
+                Some(View::Subpixel) => Over::Samples,
+                Some(_) => Over::Path,
+            },
         };
         let mut painted: Option<Picture> = None;
         let mut shown: Option<(Controls, bool)> = None;
@@ -217,15 +232,36 @@ impl Controls {
                 self.settings.antialias.grid = next_grid(self.settings.antialias.grid);
             }
             Key::Space => self.animated = !self.animated,
-            Key::V => self.view = !self.view,
+            Key::V => self.over = self.next_over(),
             Key::H => self.help = !self.help,
             _ => {}
         }
     }
 
-    /// The view of the path over the frame that was just drawn, if it is asked for and the path has one.
+    /// What is painted over the picture after this: the view of the path, that of the samples where both are to be had,
+    /// nothing.
+    fn next_over(&self) -> Over {
+        let both = View::of(self.settings.hidden_surface).is_some() && self.settings.is_antialiased();
+        match self.over {
+            Over::Nothing => Over::Path,
+            Over::Path if both => Over::Samples,
+            Over::Path | Over::Samples => Over::Nothing,
+        }
+    }
+
+    /// The view that is painted over the picture, if what is asked for is to be had.
+    fn view(&self) -> Option<View> {
+        let samples = Some(View::Subpixel).filter(|_| self.settings.is_antialiased());
+        match self.over {
+            Over::Nothing => None,
+            Over::Path => View::of(self.settings.hidden_surface).or(samples),
+            Over::Samples => samples,
+        }
+    }
+
+    /// The view over the frame that was just drawn.
     fn painted(&self, session: &mut Session, scene: &Scene) -> Option<Result<Picture>> {
-        let view = View::of(self.settings.hidden_surface).filter(|_| self.view)?;
+        let view = self.view()?;
         let frame = session.driver().capture().map_err(Error::driver("view"));
         Some(frame.and_then(|frame| view.paint(session, scene, self.look, &frame)))
     }
@@ -245,8 +281,7 @@ impl Controls {
         let grid = self.settings.antialias.grid.name();
         let grid = if self.settings.is_antialiased() { format!(", {grid} anti-aliased") } else { String::new() };
         let decals = if self.look.decals { "" } else { ", without decals" };
-        let view = View::of(self.settings.hidden_surface).filter(|_| self.view);
-        let view = view.map_or(String::new(), |view| format!(", view of {}", view.name()));
+        let view = self.view().map_or(String::new(), |view| format!(", view of {}", view.name()));
         let wires = if self.look.wireframe { ", wireframe" } else { "" };
         format!(
             "ZGA: {name}, {path} path{clocked}{grid}{view}{decals}{wires}, {} clocks to draw (H for help)",
@@ -296,7 +331,7 @@ mod tests {
             frame: 0,
             animated: false,
             help: false,
-            view: false,
+            over: Over::Nothing,
         }
     }
 
@@ -340,6 +375,35 @@ mod tests {
     }
 
     #[test]
+    fn press_v_with_a_grid_views_the_samples_after_the_path() {
+        let names = |path: HiddenSurface, grid: SubpixelGrid| {
+            let mut controls = start();
+            controls.settings.hidden_surface = path;
+            controls.settings.antialias.grid = grid;
+            [(); 3].map(|()| {
+                controls.press(Key::V, &card(0b1111));
+                controls.view().map(View::name)
+            })
+        };
+        assert_eq!(names(HiddenSurface::Za, SubpixelGrid::Grid8x8), [Some("za"), Some("subpixel"), None]);
+        assert_eq!(names(HiddenSurface::ZBuffer, SubpixelGrid::Grid4x4), [Some("subpixel"), None, Some("subpixel")]);
+        assert_eq!(names(HiddenSurface::Tile, SubpixelGrid::Off), [Some("tiles"), None, Some("tiles")]);
+        assert_eq!(names(HiddenSurface::ZBuffer, SubpixelGrid::Off), [None; 3]);
+    }
+
+    #[test]
+    fn press_a_to_no_grid_ends_the_view_of_the_samples() {
+        let mut controls = Controls { over: Over::Samples, ..start() };
+        controls.settings.antialias.grid = SubpixelGrid::Grid8x8;
+        assert_eq!(
+            controls.title("teapot", 5),
+            "ZGA: teapot, zbuffer path, 8x8 anti-aliased, view of subpixel, 5 clocks to draw (H for help)"
+        );
+        controls.press(Key::A, &CardInfo { effects: Effects::DEPTH | Effects::ANTI_ALIAS, ..card(0b1111) });
+        assert!(!controls.title("teapot", 5).contains("view"));
+    }
+
+    #[test]
     fn press_p_goes_round_the_paths_that_the_card_has() {
         let round = |paths: u32| {
             let mut controls = start();
@@ -376,7 +440,10 @@ mod tests {
         });
         assert_eq!(names, ["4x4", "8x4", "8x8", "off"]);
         controls.press(Key::A, &unit);
-        assert_eq!(controls.title("teapot", 5), "ZGA: teapot, zbuffer path, 4x4 anti-aliased, 5 clocks to draw (H for help)");
+        assert_eq!(
+            controls.title("teapot", 5),
+            "ZGA: teapot, zbuffer path, 4x4 anti-aliased, 5 clocks to draw (H for help)"
+        );
     }
 
     #[test]

@@ -94,6 +94,42 @@ fn show_view_paints_another_picture_and_keeps_the_hash_of_the_frame() {
 }
 
 #[test]
+fn show_view_of_samples_works_on_every_path_with_a_grid() {
+    let folder = Folder::new("samples");
+    let card = ["--antialias", "4x4", "--size", "96x64"];
+    for path in ["zbuffer", "za", "systolic", "tile"] {
+        let flags = [&["--hidden-surface", path][..], &card].concat();
+        let plain = folder.zga(&[&["show", "za", "--out", "plain.png"], &flags[..]].concat());
+        let drawn = folder.read("plain.png");
+        let viewed = folder.zga(&[&["show", "za", "--view", "subpixel", "--out", "plain.png"], &flags[..]].concat());
+        // The frame is the same; what is written is another picture, and its key below.
+        assert!(viewed.starts_with(&plain), "{path}: {viewed}");
+        assert!(viewed.contains("teal: edge") && viewed.contains("red: degraded"), "{path}: {viewed}");
+        assert!(folder.read("plain.png") != drawn, "{path}");
+    }
+}
+
+#[test]
+fn paths_of_a_scene_with_a_grid_keep_their_fields_and_tell_the_pool() {
+    let folder = Folder::new("pool");
+    let report = |flags: &[&str]| -> Value {
+        let all = [&["paths", "za", "--size", "64x48", "--frames", "1", "--json", "-"], flags].concat();
+        serde_json::from_str(&folder.zga(&all)).expect("JSON")
+    };
+    for grid in ["off", "4x4"] {
+        let report = report(&["--antialias", grid]);
+        let runs = report["runs"].as_array().expect("a list");
+        assert_eq!((runs.len(), &report["same"]), (7, &true.into()), "{grid}");
+        for run in runs {
+            let storage = &run["storage"];
+            assert!(["on_chip_bits", "z_buffer_bytes", "sort_memory_bytes"].iter().all(|old| !storage[old].is_null()));
+            assert_eq!(storage["subpixel_pool_bytes"], run["counters"]["subpixel.pool_peak_bytes"]);
+            assert_eq!(run["card"]["antialias"], grid);
+        }
+    }
+}
+
+#[test]
 fn waves_records_the_clocks_and_elements_asked_for() {
     let folder = Folder::new("waves");
     let flags = ["--line", "40", "--clocks", "3..23", "--pes", "2..5", "--out", "w/line.vcd"];

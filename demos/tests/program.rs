@@ -341,6 +341,29 @@ fn translucency_is_drawn_with_antialias_and_told_without() {
 }
 
 #[test]
+fn demos_of_anti_aliasing_are_smooth_at_once_and_flags_go_first() {
+    let folder = Folder::new("smooth-demos");
+    for demo in ["zone-plate", "spokes", "fine-mesh", "teapot-smooth", "crossing", "layers"] {
+        let draw = |flags: &[&str]| -> (Value, String) {
+            let all = [&["show", demo, "--size", "200x150", "--report", "a.json"], flags].concat();
+            let run = folder.zga(&all);
+            assert_eq!(run.code(), Some(0), "{demo}: {}", run.err());
+            (serde_json::from_slice(&folder.read("a.json")).expect("JSON"), run.err())
+        };
+        let (smooth, told) = draw(&[]);
+        let grid = if demo == "layers" { "4x4" } else { "8x8" };
+        assert_eq!((&smooth["card"]["antialias"], told.as_str()), (&grid.into(), ""), "{demo}");
+        let called = smooth["effects"]["called"].as_array().expect("a list");
+        assert!(called.contains(&"anti_alias".into()), "{demo}");
+        assert_eq!(called.contains(&"blend".into()), demo == "layers");
+        let (plain, told) = draw(&["--antialias", "off"]);
+        assert_eq!(plain["card"]["antialias"], "off");
+        assert!(!plain["effects"]["called"].as_array().expect("a list").contains(&"anti_alias".into()));
+        assert_eq!(told.contains("materials.glass.blend (translucency needs antialias"), demo == "layers", "{told}");
+    }
+}
+
+#[test]
 fn bench_smooth_scene_tells_its_samples() {
     let folder = Folder::new("bench-smooth");
     let line = |flags: &[&str]| {

@@ -32,7 +32,7 @@ pub(super) fn run() -> Result<Verdict> {
         Some(window) => {
             text.push_str("\nThe window shows it: drag to orbit, wheel to zoom, H for the keys, Esc to end.\n");
             print(&text)?;
-            in_window(&source, &mut session, window, LookFlags::default(), false)?;
+            in_window(&source, &mut session, window, LookFlags::default(), None)?;
         }
         None => {
             text.push_str("\nThere is no display, so the pictures are files:\n");

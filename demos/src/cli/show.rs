@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::paths::View;
 use crate::picture::{self, Picture};
 use crate::play::{Asked, Session};
-use crate::scene::Scene;
+use crate::scene::{Scene, SubpixelGrid};
 use crate::window::{self, Show as Shown};
 
 /// Folder of pictures where nothing else is asked for.
@@ -19,12 +19,13 @@ pub(super) const FOLDER: &str = "zga-out";
 
 /// Show a demo, a scene file or a mesh
 ///
-/// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, A the next grid of samples, V what the path
-/// knows, D decals, W wireframe, Space animation, S saves a picture, H help, Esc ends; the title tells path,
-/// anti-aliasing and clocks. With --headless, one of --out, --depth, --report, or no display: as files.
+/// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, A the next grid of samples, V the next view
+/// (what the path knows, what the sub-pixel unit took up where there is a grid, none), D decals, W wireframe, Space
+/// animation, S saves a picture, H help, Esc ends; the title tells path, anti-aliasing, view and clocks. With
+/// --headless, one of --out, --depth, --report, or no display: as files.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Examples:\n  zga show teapot\n  zga show decal-compare --headless --out frames --frames 90\n  zga show spot.obj --out spot.png --depth spot-depth.png --report spot.json\n  zga show teapot --hidden-surface za --za-block 8x8 --za-prediction plane --report za.json\n  zga show za --view za --out za-words.png\n  zga show wireframe --antialias 8x8 --out smooth.png"
+    after_help = "Examples:\n  zga show teapot\n  zga show decal-compare --headless --out frames --frames 90\n  zga show spot.obj --out spot.png --depth spot-depth.png --report spot.json\n  zga show teapot --hidden-surface za --za-block 8x8 --za-prediction plane --report za.json\n  zga show za --view za --out za-words.png\n  zga show crossing --view subpixel --out samples.png\n  zga show wireframe --antialias 8x8 --out smooth.png"
 )]
 pub(super) struct Show {
     /// A demo, a scene file (.json) or a mesh (.obj, .gltf, .glb)
@@ -45,8 +46,8 @@ pub(super) struct Show {
     /// Write what the last frame called for and what it cost, as JSON
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
-    /// Paint what a path knows over the picture, drawn on that path: the Za words, the tokens of each line of the
-    /// systolic array, or the lists of the tiles
+    /// Paint over the picture what a path knows, drawn on that path: the Za words, the tokens of each line of the
+    /// systolic array, or the lists of the tiles; or, on any path, the pixels that the sub-pixel unit took up and why
     #[arg(long, value_name = "VIEW", value_parser = named(View::NAMED))]
     view: Option<View>,
     #[command(flatten)]
@@ -64,8 +65,9 @@ impl Show {
         }
         let asked = viewed(self.card.asked(), self.view)?;
         let source = Source::open(&self.what, asked.size, asked.card.antialias)?;
+        sampled(&asked, &source, self.view)?;
         let wants_files = self.headless || self.out.is_some() || self.depth.is_some() || self.report.is_some();
-        if !wants_files && show_window(&source, &asked, self.look, self.view.is_some())? {
+        if !wants_files && show_window(&source, &asked, self.look, self.view)? {
             return Ok(Verdict::Good);
         }
         if !wants_files {
@@ -119,10 +121,10 @@ impl Show {
 
 /// What is asked for, on the path that a view is of.
 fn viewed(mut asked: Asked, view: Option<View>) -> Result<Asked> {
-    if let Some(view) = view {
-        let path = asked.card.hidden_surface.get_or_insert(view.path());
-        if *path != view.path() {
-            let (view, needed, asked) = (view.name(), view.path().name(), path.name());
+    if let Some((view, needed)) = view.and_then(|view| Some((view, view.path()?))) {
+        let path = asked.card.hidden_surface.get_or_insert(needed);
+        if *path != needed {
+            let (view, needed, asked) = (view.name(), needed.name(), path.name());
             let why = format!("shows what the {needed} path knows, but --hidden-surface asks for {asked}");
             return Err(Error::Use(format!("--view: {view} {why}")));
         }
@@ -130,12 +132,23 @@ fn viewed(mut asked: Asked, view: Option<View>) -> Result<Asked> {
     Ok(asked)
 }
 
+/// Refuses the view of the sub-pixel unit where there are no samples for it.
+fn sampled(asked: &Asked, source: &Source, view: Option<View>) -> Result<()> {
+    let grid = asked.card.or(source.scene(0).card).antialias.unwrap_or(SubpixelGrid::Off);
+    if view == Some(View::Subpixel) && grid == SubpixelGrid::Off {
+        let why = "shows which pixels the sub-pixel unit took up, but anti-aliasing is off";
+        let how = "switch it on with --antialias 8x8, or with antialias in the scene's card";
+        return Err(Error::Use(format!("--view: subpixel {why}: {how}")));
+    }
+    Ok(())
+}
+
 fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
 }
 
 /// Shows a source in a window until it is closed; false where there is no display.
-fn show_window(source: &Source, asked: &Asked, look: LookFlags, view: bool) -> Result<bool> {
+fn show_window(source: &Source, asked: &Asked, look: LookFlags, view: Option<View>) -> Result<bool> {
     let first = source.scene(0);
     let Some(window) = window::open(&source.name, first.size) else {
         return Ok(false);
@@ -145,13 +158,13 @@ fn show_window(source: &Source, asked: &Asked, look: LookFlags, view: bool) -> R
     Ok(true)
 }
 
-/// Shows a source in an open window until it is closed, at first with a view of the path or without.
+/// Shows a source in an open window until it is closed, at first with a view or without.
 pub(super) fn in_window(
     source: &Source,
     session: &mut Session,
     window: minifb::Window,
     look: LookFlags,
-    view: bool,
+    view: Option<View>,
 ) -> Result<()> {
     let scene = |frame: u32| -> Scene { source.scene(frame) };
     let save = |number: u32| Path::new(FOLDER).join(format!("{}-{number:04}.png", source.stem));

@@ -38,6 +38,7 @@ impl Source {
     pub(super) fn open(text: &str, size: Option<[u32; 2]>, antialias: Option<SubpixelGrid>) -> Result<Self> {
         let (name, file) = (text.to_owned(), Path::new(text));
         if let Some(demo) = demos::find(text) {
+            tell_unsupported(text, &demo.build(0), antialias);
             return Ok(Self { name, stem: text.to_owned(), size, kind: Kind::Demo(demo) });
         }
         let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
@@ -52,12 +53,7 @@ impl Source {
         for line in scene.warnings() {
             note(&format!("warning: {line}"));
         }
-        let grid = antialias.or(scene.card.antialias).unwrap_or(SubpixelGrid::Off);
-        let beyond = scene.unsupported_effects(grid);
-        if !beyond.is_empty() {
-            let beyond = beyond.join(", ");
-            note(&format!("warning: {name}: this card has no unit yet for {beyond}; drawn without"));
-        }
+        tell_unsupported(text, &scene, antialias);
         let stem = file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy()).into_owned();
         Ok(Self { name, stem, size, kind: Kind::Scene(Box::new(scene)) })
     }
@@ -80,6 +76,16 @@ impl Source {
     pub(super) fn file_name(&self, frame: u32, frames: u32, ending: &str) -> String {
         let stem = &self.stem;
         if frames == 1 { format!("{stem}.{ending}") } else { format!("{stem}-{frame:04}.{ending}") }
+    }
+}
+
+/// Warns of effects that no unit of the card has; `antialias` goes before the scene's own.
+fn tell_unsupported(name: &str, scene: &Scene, antialias: Option<SubpixelGrid>) {
+    let grid = antialias.or(scene.card.antialias).unwrap_or(SubpixelGrid::Off);
+    let beyond = scene.unsupported_effects(grid);
+    if !beyond.is_empty() {
+        let beyond = beyond.join(", ");
+        note(&format!("warning: {name}: this card has no unit yet for {beyond}; drawn without"));
     }
 }
 

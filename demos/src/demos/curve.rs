@@ -83,27 +83,7 @@ fn patch() -> Mesh {
         let (along, across) = (weights(u), weights(v));
         (0..16).map(|index| control(index / 4, index % 4) * along[index / 4] * across[index % 4]).sum()
     };
-    let parameter = |step: u32| f64::from(step) / f64::from(CELLS);
-    let mut positions = Vec::new();
-    let mut normals = Vec::new();
-    let mut indices = Vec::new();
-    for i in 0..=CELLS {
-        for j in 0..=CELLS {
-            let (u, v) = (parameter(i), parameter(j));
-            positions.push(narrow(point(u, v)));
-            let along = point(u + 1e-4, v) - point(u - 1e-4, v);
-            let across = point(u, v + 1e-4) - point(u, v - 1e-4);
-            normals.push(narrow(across.cross(along).normalize_or(DVec3::Y)));
-            if i < CELLS && j < CELLS {
-                let a = i * (CELLS + 1) + j;
-                let c = a + CELLS + 1;
-                indices.extend([a, a + 1, c, a + 1, c + 1, c]);
-            }
-        }
-    }
-    let mut mesh = Mesh::new("patch", positions, indices, TEAL);
-    mesh.normals = Some(normals);
-    mesh
+    shapes::open_grid([CELLS; 2], TEAL, point)
 }
 
 fn net() -> Vec<[f32; 3]> {

@@ -2,20 +2,25 @@
 //!
 //! Each is a function from a frame number to a scene, so that it can move; frame 0 is the picture for a still.
 
+mod crossing;
 mod curve;
 mod decal_compare;
 mod depth;
+mod fine_mesh;
+mod layers;
 mod palette;
 mod paths;
 mod points;
 mod raster;
 mod shapes;
 mod solids;
+mod spokes;
 mod teapot;
 mod text;
 mod wireframe;
+mod zone_plate;
 
-use crate::scene::Scene;
+use crate::scene::{Colour, Scene, SubpixelGrid};
 
 /// A named scene.
 #[derive(Clone, Copy, Debug)]
@@ -129,12 +134,55 @@ pub const DEMOS: &[Demo] = &[
         frames: 1,
         scene: paths::tile,
     },
+    Demo {
+        name: "zone-plate",
+        description: "rings that get thinner outwards than a pixel: what anti-aliasing is tried on",
+        frames: zone_plate::FRAMES,
+        scene: zone_plate::scene,
+    },
+    Demo {
+        name: "spokes",
+        description: "anti-aliased wedges that meet in a point, and fans of lines of five widths",
+        frames: spokes::FRAMES,
+        scene: spokes::scene,
+    },
+    Demo {
+        name: "fine-mesh",
+        description: "a rippled sheet of 60,000 anti-aliased triangles, many of them smaller than a pixel",
+        frames: TURN,
+        scene: fine_mesh::scene,
+    },
+    Demo {
+        name: "teapot-smooth",
+        description: "the teapot anti-aliased, its markings drawn as lines of two widths",
+        frames: TURN,
+        scene: teapot::smooth,
+    },
+    Demo {
+        name: "crossing",
+        description: "surfaces that cross inside pixels, where samples compare depths",
+        frames: TURN,
+        scene: crossing::scene,
+    },
+    Demo {
+        name: "layers",
+        description: "300 faint translucent discs in any order, with a ball and a bar among them",
+        frames: TURN,
+        scene: layers::scene,
+    },
 ];
 
 /// The demonstration with this name.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static Demo> {
     DEMOS.iter().find(|demo| demo.name == name)
+}
+
+/// An empty scene that is anti-aliased with 64 samples a pixel, unless the demo, flags or keys say otherwise.
+fn smooth_scene(size: [u32; 2], background: Colour) -> Scene {
+    let mut scene = Scene::new(size, background);
+    scene.card.antialias = Some(SubpixelGrid::Grid8x8);
+    scene
 }
 
 /// Part of a full turn at a frame, in radians.
@@ -172,8 +220,25 @@ mod tests {
     }
 
     #[test]
-    fn demos_call_for_no_effect_beyond_colours_and_decals() {
-        assert!(DEMOS.iter().all(|demo| demo.build(0).unsupported_effects(crate::scene::SubpixelGrid::Off).is_empty()));
+    fn demos_call_for_no_effect_beyond_colours_decals_and_their_samples() {
+        for demo in DEMOS {
+            let scene = demo.build(0);
+            let grid = scene.card.antialias.unwrap_or(SubpixelGrid::Off);
+            assert_eq!(scene.unsupported_effects(grid), Vec::<String>::new(), "{}", demo.name);
+        }
+        let layers = find("layers").expect("listed").build(0);
+        assert_eq!(layers.unsupported_effects(SubpixelGrid::Off).len(), 1, "translucency needs samples");
+    }
+
+    #[test]
+    fn demos_of_anti_aliasing_ask_for_it_by_themselves() {
+        let asking = |grid| {
+            let asks = move |demo: &&Demo| demo.build(0).card.antialias == Some(grid);
+            DEMOS.iter().filter(asks).map(|demo| demo.name).collect::<Vec<_>>()
+        };
+        let smooth = ["zone-plate", "spokes", "fine-mesh", "teapot-smooth", "crossing"];
+        assert_eq!(asking(SubpixelGrid::Grid8x8), smooth);
+        assert_eq!(asking(SubpixelGrid::Grid4x4), ["layers"]);
     }
 
     #[test]

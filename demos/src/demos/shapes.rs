@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::palette::mix;
 use crate::mesh::Mesh;
@@ -11,6 +11,12 @@ use crate::scene::{Colour, Colours, Decal, Draw, MeshDraw, Primitives, narrow};
 /// Lines of one colour from pairs of positions.
 pub(super) fn lines(pairs: Vec<[f32; 3]>, colour: Colour) -> Draw {
     Draw::Lines(Primitives { vertices: pairs, colours: Colours::One(colour), ..Default::default() })
+}
+
+/// The same, so many pixels wide where they are anti-aliased.
+pub(super) fn wide_lines(pairs: Vec<[f32; 3]>, colour: Colour, width: f32) -> Draw {
+    let colours = Colours::One(colour);
+    Draw::Lines(Primitives { vertices: pairs, colours, extent: Some(width), ..Default::default() })
 }
 
 /// The ends of the pieces of a polyline.
@@ -94,6 +100,39 @@ pub(super) fn closed_grid(cells: [u32; 2], colour: Colour, point: impl Fn(f64, f
     let mut mesh = Mesh::new("grid", positions, indices, colour);
     mesh.normals = Some(normals);
     mesh
+}
+
+/// A surface over a grid of parameters in 0..=1, open in both, with normals: `point(u, v)`; its front is the side
+/// that the cross product of the way of v and the way of u points to.
+pub(super) fn open_grid(cells: [u32; 2], colour: Colour, point: impl Fn(f64, f64) -> DVec3) -> Mesh {
+    const STEP: f64 = 1e-4;
+    let mut positions = Vec::new();
+    let mut normals = Vec::new();
+    let mut indices = Vec::new();
+    for i in 0..=cells[0] {
+        for j in 0..=cells[1] {
+            let (u, v) = (f64::from(i) / f64::from(cells[0]), f64::from(j) / f64::from(cells[1]));
+            positions.push(narrow(point(u, v)));
+            let along = point(u + STEP, v) - point(u - STEP, v);
+            let across = point(u, v + STEP) - point(u, v - STEP);
+            normals.push(narrow(across.cross(along).normalize_or(DVec3::Y)));
+            if i < cells[0] && j < cells[1] {
+                let a = i * (cells[1] + 1) + j;
+                let c = a + cells[1] + 1;
+                indices.extend([a, a + 1, c, a + 1, c + 1, c]);
+            }
+        }
+    }
+    let mut mesh = Mesh::new("sheet", positions, indices, colour);
+    mesh.normals = Some(normals);
+    mesh
+}
+
+/// A mesh somewhere else.
+pub(super) fn placed(mesh: Mesh, transform: DMat4) -> Draw {
+    // A matrix for column vectors, column by column, is the same numbers as one for row vectors, row by row.
+    let transform = transform.to_cols_array().map(|entry| entry as f32);
+    Draw::Mesh(MeshDraw { transform, ..MeshDraw::of(mesh) })
 }
 
 /// A point of a torus about the y axis.
@@ -188,6 +227,18 @@ mod tests {
         assert_closed_and_outwards(&sphere(2.0, 2, [255; 4]));
         assert_closed_and_outwards(&closed_grid([24, 12], [255; 4], |u, v| torus_point(2.0, 0.7, u, v)));
         assert_closed_and_outwards(&closed_grid([96, 8], [255; 4], |u, v| knot_point(1.0, 0.2, u, v)));
+    }
+
+    #[test]
+    fn open_grid_has_a_border_and_normals_of_its_front() {
+        let mesh = open_grid([6, 4], [255; 4], |u, v| DVec3::new(u, u * v, v));
+        assert_eq!((mesh.check(), mesh.triangles().count()), (Ok(()), 2 * 6 * 4));
+        let normals = mesh.normals.as_ref().expect("normals");
+        for corners in mesh.triangles() {
+            assert!(mesh.face_vector(corners).dot(wide(normals[corners[0] as usize])) > 0.0);
+        }
+        // Edges of one face alone are features at every angle.
+        assert_eq!(mesh.feature_edges(179.9).len(), 2 * (6 + 4));
     }
 
     #[test]

@@ -4,8 +4,7 @@ use glam::{DMat4, DVec3};
 
 use super::palette::{AMBER, CORAL, DUSK, NIGHT, SKY, TEAL};
 use super::{SIZE, shapes, turn};
-use crate::mesh::Mesh;
-use crate::scene::{Camera, Draw, MeshDraw, Perspective, Scene};
+use crate::scene::{Camera, Perspective, Scene};
 
 pub(super) fn scene(frame: u32) -> Scene {
     let mut scene = Scene::new(SIZE, NIGHT);
@@ -23,16 +22,10 @@ pub(super) fn scene(frame: u32) -> Scene {
     let bar = DVec3::new(2.05, 0.36, 0.36);
     scene.draw = vec![
         shapes::floor(-1.95, 8.0, DUSK, NIGHT),
-        placed(shapes::sphere(1.02, 5, AMBER), DMat4::IDENTITY),
-        placed(ring, turned(DVec3::new(1.0, 0.0, 0.35), 0.5 + angle)),
-        placed(shapes::cuboid(bar, CORAL), turned(DVec3::new(0.2, 1.0, 0.3), 0.7 - angle)),
-        placed(shapes::cuboid(bar, SKY), turned(DVec3::Z, 1.1) * turned(DVec3::X, 0.4 + 2.0 * angle)),
+        shapes::placed(shapes::sphere(1.02, 5, AMBER), DMat4::IDENTITY),
+        shapes::placed(ring, turned(DVec3::new(1.0, 0.0, 0.35), 0.5 + angle)),
+        shapes::placed(shapes::cuboid(bar, CORAL), turned(DVec3::new(0.2, 1.0, 0.3), 0.7 - angle)),
+        shapes::placed(shapes::cuboid(bar, SKY), turned(DVec3::Z, 1.1) * turned(DVec3::X, 0.4 + 2.0 * angle)),
     ];
     scene
-}
-
-fn placed(mesh: Mesh, transform: DMat4) -> Draw {
-    // A matrix for column vectors, column by column, is the same numbers as one for row vectors, row by row.
-    let transform = transform.to_cols_array().map(|entry| entry as f32);
-    Draw::Mesh(MeshDraw { transform, ..MeshDraw::of(mesh) })
 }

@@ -6,16 +6,37 @@
 use std::f64::consts::TAU;
 
 use super::palette::{COBALT, CORAL, DUSK, NIGHT, PORCELAIN};
-use super::{SIZE, shapes, text, turn};
+use super::{SIZE, shapes, smooth_scene, text, turn};
 use crate::scene::{Camera, Draw, Perspective, Scene};
 use crate::teapot::{Marking, Part, Teapot};
 
 /// Cells along each side of a patch.
 const LEVEL: u32 = 16;
 
+/// Pixels that the pattern's and the letters' lines are wide, anti-aliased.
+const WIDTHS: [f32; 2] = [1.25, 3.0];
+
 pub(super) fn scene(frame: u32) -> Scene {
     let teapot = Teapot::new(LEVEL, PORCELAIN);
-    let mut scene = Scene::new(SIZE, NIGHT);
+    // Each stroke of the letters five times for weight.
+    let strokes = accents(&teapot, &[[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]);
+    let painted = vec![shapes::lines(pairs(&pattern(&teapot)), COBALT), shapes::lines(pairs(&strokes), CORAL)];
+    showing(Scene::new(SIZE, NIGHT), &teapot, painted, frame)
+}
+
+/// The same anti-aliased: a line of the letters has its weight by its width.
+pub(super) fn smooth(frame: u32) -> Scene {
+    let teapot = Teapot::new(LEVEL, PORCELAIN);
+    let strokes = accents(&teapot, &[[0.0, 0.0]]);
+    let painted = vec![
+        shapes::wide_lines(pairs(&pattern(&teapot)), COBALT, WIDTHS[0]),
+        shapes::wide_lines(pairs(&strokes), CORAL, WIDTHS[1]),
+    ];
+    showing(smooth_scene(SIZE, NIGHT), &teapot, painted, frame)
+}
+
+/// The teapot on its floor with what is painted on it.
+fn showing(mut scene: Scene, teapot: &Teapot, painted: Vec<Draw>, frame: u32) -> Scene {
     let camera = Camera::Perspective(Perspective {
         eye: [2.6, 4.3, 9.4],
         target: [0.2, 1.38, 0.0],
@@ -25,17 +46,13 @@ pub(super) fn scene(frame: u32) -> Scene {
         far: 24.0,
     });
     scene.camera = camera.orbited(turn(frame), 0.0, 1.0);
-    scene.draw = vec![
-        shapes::floor(-0.01, 9.0, DUSK, NIGHT),
-        shapes::solid(teapot.mesh().clone()),
-        shapes::decal(vec![drawn(&pattern(&teapot), COBALT), drawn(&accents(&teapot), CORAL)]),
-    ];
+    scene.draw =
+        vec![shapes::floor(-0.01, 9.0, DUSK, NIGHT), shapes::solid(teapot.mesh().clone()), shapes::decal(painted)];
     scene
 }
 
-fn drawn(markings: &[Marking], colour: [u8; 4]) -> Draw {
-    let pairs = markings.iter().flat_map(|marking| shapes::pieces(&marking.points, marking.closed));
-    shapes::lines(pairs.collect(), colour)
+fn pairs(markings: &[Marking]) -> Vec<[f32; 3]> {
+    markings.iter().flat_map(|marking| shapes::pieces(&marking.points, marking.closed)).collect()
 }
 
 /// The painted pattern: bands, waves, leaves round the lid, the letters.
@@ -80,8 +97,8 @@ fn wave(teapot: &Teapot, middle: f64, height: f64, periods: f64, phase: f64) -> 
     teapot.marking(Part::Body, &through)
 }
 
-/// What is painted in the second colour: the name on both sides, each stroke five times for weight.
-fn accents(teapot: &Teapot) -> Vec<Marking> {
+/// What is painted in the second colour: the name on both sides, each stroke once for each of `places` beside it.
+fn accents(teapot: &Teapot, places: &[[f64; 2]]) -> Vec<Marking> {
     const TEXT: &str = "ZGA";
     /// Height of the letters, and how much wider a step in v is than one in u there.
     const HEIGHT: f64 = 0.42;
@@ -89,7 +106,7 @@ fn accents(teapot: &Teapot) -> Vec<Marking> {
     const WEIGHT: f64 = 0.014;
     let mut all = Vec::new();
     for side in [1.0, 3.0] {
-        for [right, up] in [[0.0, 0.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] {
+        for [right, up] in places {
             for stroke in text::strokes(TEXT) {
                 let place = |[x, y]: [f64; 2]| {
                     let x = x - text::width(TEXT) / 2.0 + right * WEIGHT;

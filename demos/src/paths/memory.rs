@@ -14,8 +14,10 @@
 //! | colours | `colour.writes` |
 //! | Za words | `za.words_written` |
 //!
-//! Packets and vertices are the same on all paths and stand beside them once. The tile unit's sort memory is its own:
-//! its size is told, and `tile.links_walked` is its traffic.
+//! The sub-pixel unit works behind each path, on the same fragments, in a pool of its own. The most bytes that the
+//! lists of a line took are told beside the path's storage, and its clocks with those of the other units; the words
+//! that it moves in its pool are not counted. Packets and vertices are the same on all paths and stand beside them
+//! once. The tile unit's sort memory is its own: its size is told, and `tile.links_walked` is its traffic.
 //!
 //! | on the chip | bits |
 //! | --- | --- |
@@ -90,6 +92,8 @@ pub struct Storage {
     pub z_buffer_bytes: u64,
     /// Sort memory of the tile unit, bytes.
     pub sort_memory_bytes: u64,
+    /// Most bytes that the lists of a line took in the sub-pixel unit's pool; 0 without a grid of samples.
+    pub subpixel_pool_bytes: u64,
 }
 
 impl Storage {
@@ -99,15 +103,17 @@ impl Storage {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         let z_buffer_bytes = 4 * pixels;
         let none = ("", 0);
+        let subpixel_pool_bytes = counters.get(Counter::SubpixelPoolPeakBytes);
+        let plain = Self { on_chip: [none; 3], subpixel_pool_bytes, ..Self::default() };
         match settings.hidden_surface {
-            HiddenSurface::ZBuffer => Self { on_chip: [none; 3], z_buffer_bytes, ..Self::default() },
+            HiddenSurface::ZBuffer => Self { z_buffer_bytes, ..plain },
             HiddenSurface::Za => {
                 let bits = 8 * settings.za.frame_bytes(size[0], size[1]);
-                Self { on_chip: [("za_ram", bits), none, none], z_buffer_bytes, ..Self::default() }
+                Self { on_chip: [("za_ram", bits), none, none], z_buffer_bytes, ..plain }
             }
             HiddenSurface::Systolic => {
                 let bits = element(settings, size[0]).register_bits * u64::from(size[0]);
-                Self { on_chip: [("element_registers", bits), none, none], ..Self::default() }
+                Self { on_chip: [("element_registers", bits), none, none], ..plain }
             }
             HiddenSurface::Tile => {
                 let unit = tile::Storage::of(settings.tile_size, settings.depth.bits(), false);
@@ -117,7 +123,7 @@ impl Storage {
                     ("colour_buffer", 8 * unit.colour_bytes),
                 ];
                 let sort_memory_bytes = counters.get(Counter::TileSortMemoryBytes);
-                Self { on_chip, z_buffer_bytes: 0, sort_memory_bytes }
+                Self { on_chip, sort_memory_bytes, ..plain }
             }
         }
     }

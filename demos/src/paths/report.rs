@@ -13,7 +13,7 @@
 //! | `runs[].cycles` | clocks of each unit, and `total` |
 //! | `runs[].counters` | all other counters by their names |
 //! | `runs[].memory_words` | `read`: `depths`, `za`, `scan_out`, `total`; `written`: `depths`, `colours`, `za`, `total` |
-//! | `runs[].storage` | `on_chip_bits`: parts by name, and `total`; `z_buffer_bytes`; `sort_memory_bytes` |
+//! | `runs[].storage` | `on_chip_bits`: parts by name, and `total`; `z_buffer_bytes`; `sort_memory_bytes`; `subpixel_pool_bytes` |
 //! | `runs[].host_ms`, `.host_ratio` | median of the frames, and the same over that of the first run |
 //! | `maps[]` | present with a picture: `name`, `cell`, `units`, `cells`, `values`, `sum`, `whole`, `adds_up` |
 
@@ -85,6 +85,7 @@ fn run_json(found: &Comparison, run: &Run) -> Value {
             "on_chip_bits": on_chip,
             "z_buffer_bytes": run.storage.z_buffer_bytes,
             "sort_memory_bytes": run.storage.sort_memory_bytes,
+            "subpixel_pool_bytes": run.storage.subpixel_pool_bytes,
         },
         "host_ms": run.host_ms,
         "host_ratio": host_ratio(found, run),
@@ -123,7 +124,13 @@ pub fn table(found: &Comparison) -> String {
     text.push_str("\n  Storage of the path\n");
     text.push_str(&by_path(found, &storage(found)));
     text.push_str("\n  Work of the path\n");
-    text.push_str(&work(found));
+    text.push_str(&work(&plain(found), &["za.", "systolic.", "tile."]));
+    // It has the same work behind every path.
+    let samples = found.reference().map_or_else(String::new, |run| work(&[run], &["subpixel."]));
+    if !samples.is_empty() {
+        text.push_str("\n  Work of the sub-pixel unit\n");
+        text.push_str(&samples);
+    }
     text
 }
 
@@ -228,15 +235,15 @@ fn storage(found: &Comparison) -> Vec<(String, Vec<u64>)> {
         of("colour buffer, bits", &part("colour_buffer")),
         of("Z buffer in memory, bytes", &|run| run.storage.z_buffer_bytes),
         of("sort memory, bytes", &|run| run.storage.sort_memory_bytes),
+        of("sub-pixel lists of a line, bytes", &|run| run.storage.subpixel_pool_bytes),
     ]
 }
 
-/// The counters that only one path has.
-fn work(found: &Comparison) -> String {
-    let own = ["za.", "systolic.", "tile."];
+/// The counters of some units that are not zero.
+fn work(runs: &[&Run], units: &[&str]) -> String {
     let mut rows = Vec::new();
-    for run in plain(found) {
-        let counters = Counter::ALL.iter().filter(|counter| own.iter().any(|unit| counter.name().starts_with(unit)));
+    for run in runs {
+        let counters = Counter::ALL.iter().filter(|counter| units.iter().any(|unit| counter.name().starts_with(unit)));
         for counter in counters.filter(|counter| run.counters.get(**counter) > 0) {
             rows.push(row([counter.name(), &grouped(run.counters.get(*counter)), counter.doc()]));
         }

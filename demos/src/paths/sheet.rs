@@ -251,12 +251,13 @@ fn barred(found: &Comparison) -> impl Iterator<Item = (String, &Run)> {
 }
 
 fn clocks(found: &Comparison) -> Bars {
-    const UNITS: [(&str, &[Counter]); 5] = [
+    const UNITS: [(&str, &[Counter]); 6] = [
         ("front end", &[Counter::CyclesFrontend]),
         ("geometry", &[Counter::CyclesGeometry]),
         ("hidden surfaces", &[Counter::CyclesZBuffer, Counter::CyclesZa, Counter::CyclesSystolic, Counter::CyclesTile]),
         ("shading", &[Counter::CyclesShading]),
         ("bitmap, scan-out", &[Counter::CyclesBitmap, Counter::CyclesScanout]),
+        ("sub-pixels", &[Counter::CyclesSubpixel]),
     ];
     let parts = |run: &Run| {
         UNITS.iter().map(|(_, counters)| counters.iter().map(|counter| run.counters.get(*counter)).sum()).collect()

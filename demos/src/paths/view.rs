@@ -1,13 +1,17 @@
-//! One map over a picture: what the Za words say, tokens of the lines, lists of the tiles.
+//! One map over a picture: what the Za words say, tokens of the lines, lists of the tiles, pixels of the sub-pixel
+//! unit.
 //!
-//! Inputs from: frames, [`ZaWords`], [`Survey`]. Outputs to: `zga show --view`, the window, [`super::sheet`].
+//! Inputs from: frames, [`ZaWords`], [`Survey`], [`SubpixelMap`]. Outputs to: `zga show --view`, the window,
+//! [`super::sheet`].
 //!
 //! * za: cleared blocks are hatched, initialised ones are shaded by their word from light (near) to dark, and blue where
 //!   the word is the farthest depth: some of the block is still background.
 //! * tokens: a bar on each line, as long as its tokens; what is left of the mark hides behind the luminance bus.
 //! * tiles: the longer a tile's list, the lighter.
+//! * subpixel: a colour for each reason why the unit took a pixel up; the others are the path's and stay grey.
 
 use zga_abi::format::HiddenSurface;
+use zga_device::{Reason, SubpixelMap};
 use zga_driver::Frame;
 
 use super::survey::{Survey, lines, tiles};
@@ -29,6 +33,14 @@ pub(super) const NEAR_FAR: [Ink; 2] = [[255, 240, 200], [120, 50, 40]];
 pub(super) const FREE: Ink = [60, 190, 180];
 /// The tokens beyond.
 pub(super) const COSTLY: Ink = [244, 130, 70];
+/// Pixels that a fragment covers a part of.
+const EDGE: Ink = [44, 168, 172];
+/// Pixels where two fragments that cover all of it cross.
+const CROSSING: Ink = [255, 214, 92];
+/// Pixels with a translucent fragment.
+const LAYER: Ink = [150, 92, 214];
+/// Pixels that found no room.
+const DEGRADED: Ink = [255, 56, 48];
 /// Lines between cells, part of 255.
 const LINES: u8 = 70;
 /// Clocks that a token takes to enter the array.
@@ -43,12 +55,14 @@ pub enum View {
     Tokens,
     /// The list of each tile.
     Tiles,
+    /// The pixels that the sub-pixel unit took up.
+    Subpixel,
 }
 
 impl View {
     /// Every view with its name on the command line.
     pub const NAMED: &'static [(&'static str, Self)] =
-        &[("za", Self::Za), ("tokens", Self::Tokens), ("tiles", Self::Tiles)];
+        &[("za", Self::Za), ("tokens", Self::Tokens), ("tiles", Self::Tiles), ("subpixel", Self::Subpixel)];
 
     /// Its name on the command line.
     #[must_use]
@@ -57,22 +71,24 @@ impl View {
             Self::Za => "za",
             Self::Tokens => "tokens",
             Self::Tiles => "tiles",
+            Self::Subpixel => "subpixel",
         }
     }
 
     /// The view of a path; `None` for the plain Z buffer, which knows nothing beside its depths.
     #[must_use]
     pub fn of(path: HiddenSurface) -> Option<Self> {
-        Self::NAMED.iter().map(|(_, view)| *view).find(|view| view.path() == path)
+        Self::NAMED.iter().map(|(_, view)| *view).find(|view| view.path() == Some(path))
     }
 
-    /// The path that the view is of.
+    /// The path that the view is of; `None` for the view of the sub-pixel unit, which works behind each of them.
     #[must_use]
-    pub const fn path(self) -> HiddenSurface {
+    pub const fn path(self) -> Option<HiddenSurface> {
         match self {
-            Self::Za => HiddenSurface::Za,
-            Self::Tokens => HiddenSurface::Systolic,
-            Self::Tiles => HiddenSurface::Tile,
+            Self::Za => Some(HiddenSurface::Za),
+            Self::Tokens => Some(HiddenSurface::Systolic),
+            Self::Tiles => Some(HiddenSurface::Tile),
+            Self::Subpixel => None,
         }
     }
 
@@ -88,14 +104,18 @@ impl View {
                 "bar: tokens of the line; the mark is where they begin to take longer than the pixels on the bus"
             }
             Self::Tiles => "dark to light: polygons in the list of the tile",
+            Self::Subpixel => {
+                "teal: edge, covered in part; yellow: crossing, two that cover all of it; violet: layer, translucent; \
+                 red: degraded, no room in the pool; grey: left as the path drew it"
+            }
         }
     }
 
-    /// The view over a frame of the scene, which the session has just drawn. All but the Za words are found by drawing
-    /// the scene many times more, see [`Survey`].
+    /// The view over a frame of the scene, which the session has just drawn. The pixels of the sub-pixel unit are found
+    /// by drawing it once more; tokens and tiles by drawing it many times more, see [`Survey`].
     ///
     /// # Errors
-    /// [`crate::Error::Driver`].
+    /// [`crate::Error::Driver`]; [`crate::Error::Card`] where the card's thread is gone.
     pub fn paint(self, session: &mut Session, scene: &Scene, look: Look, frame: &Frame) -> Result<Picture> {
         let picture = Picture::of_frame(frame);
         let maximum = session.settings().depth.maximum() as i32;
@@ -106,6 +126,7 @@ impl View {
                 tokens(&picture, &map, free_tokens(session.settings(), picture.width, map.units), 1)
             }
             Self::Tiles => cells(&picture, &tiles(session, scene, look)?, 1),
+            Self::Subpixel => session.subpixels()?.map_or(picture.clone(), |map| subpixels(&picture, &map)),
         })
     }
 }
@@ -158,6 +179,18 @@ pub(super) fn tokens(picture: &Picture, map: &Survey, free: u64, times: u32) -> 
         canvas.tint([length(free), 0], [1, picture.height * times], [255; 3], 150);
     }
     canvas.into_picture()
+}
+
+/// A colour for each reason over the grey picture.
+fn subpixels(picture: &Picture, map: &SubpixelMap) -> Picture {
+    let ink = |x: u32, y: u32| match map.at(x, y) {
+        Reason::Untouched => (CLEARED, 150),
+        Reason::Edge => (EDGE, 215),
+        Reason::Crossing => (CROSSING, 235),
+        Reason::Layer => (LAYER, 205),
+        Reason::Degraded => (DEGRADED, 245),
+    };
+    over(picture, 1, ink).into_picture()
 }
 
 /// The most tokens of `lines` lines of `width` pixels that do not make them any longer: a line takes the longer of
@@ -227,6 +260,31 @@ mod tests {
         let painted = tokens(&plain(8, 2), &map, 1, 1);
         let lit = |y: u32| (0..8).filter(|x| painted.at(*x, y).is_some_and(|[r, g, _]| r.max(g) > 110)).count();
         assert_eq!([lit(0), lit(1)], [6, 3]);
+    }
+
+    #[test]
+    fn subpixels_every_reason_has_an_ink_of_its_own() {
+        let width = Reason::ALL.len() as u32;
+        let map = SubpixelMap { width, height: 1, reasons: Reason::ALL.to_vec() };
+        let painted = subpixels(&plain(width, 1), &map);
+        let inks: Vec<_> = (0..width).filter_map(|x| painted.at(x, 0)).collect();
+        let light = |[r, g, b]: Ink| (54 * u32::from(r) + 183 * u32::from(g) + 19 * u32::from(b)) / 256;
+        assert_eq!(inks.len(), Reason::ALL.len());
+        for (place, ink) in inks.iter().enumerate() {
+            let apart = |other: &Ink| (0..3).map(|c| u32::from(ink[c].abs_diff(other[c]))).sum::<u32>();
+            assert!(inks[..place].iter().all(|other| apart(other) > 150), "{inks:?}");
+        }
+        assert!(
+            inks[1..].iter().all(|ink| light(*ink) > light(inks[0]) + 16),
+            "what is left alone is darkest: {inks:?}"
+        );
+    }
+
+    #[test]
+    fn of_each_path_but_the_plain_one_is_found_and_the_unit_belongs_to_none() {
+        let found = HiddenSurface::ALL.iter().map(|path| View::of(*path)).collect::<Vec<_>>();
+        assert_eq!(found, [None, Some(View::Za), Some(View::Tokens), Some(View::Tiles)]);
+        assert_eq!(View::Subpixel.path(), None);
     }
 
     #[test]

@@ -1,14 +1,15 @@
-//! Looking into the units: Za words, and the work of a part of the picture.
+//! Looking into the units: Za words, the pixels of the sub-pixel unit, and the work of a part of the picture.
 //!
-//! Duties: reads the Za words of the frame over the bus; draws the frame once more with its draws cut to an area and
-//! reads what that cost. The unit's own counters so tell where in the picture the work is, without a model of it on
-//! this side. Inputs from: the session's last frame. Outputs to: [`crate::paths`].
+//! Duties: reads the Za words of the frame over the bus; draws the frame once more while the card notes what the
+//! sub-pixel unit takes up, or with its draws cut to an area, and reads what that cost. The unit's own counters so
+//! tell where in the picture the work is, without a model of it on this side. Inputs from: the session's last frame.
+//! Outputs to: [`crate::paths`].
 
 use zga_abi::Bus;
 use zga_abi::Reg;
 use zga_abi::bus::ZA_BASE;
 use zga_abi::format::HiddenSurface;
-use zga_device::Card;
+use zga_device::{Card, SubpixelMap};
 use zga_driver::{Counters, Rectangle};
 
 use super::Session;
@@ -74,6 +75,30 @@ impl<B: Bus> Session<B> {
         Ok(Some(ZaWords { block, blocks, words }))
     }
 
+    /// Which pixels of the last frame the sub-pixel unit took up, and why: draws the frame once more while the card
+    /// notes them. A unit that was not called took up none; `None` without a grid of samples, and before the first
+    /// frame. The picture on the screen stays; the frame buffer behind it does not.
+    ///
+    /// # Errors
+    /// [`Error::Driver`]; [`Error::Card`] where the card's thread is gone.
+    pub fn subpixels(&mut self) -> Result<Option<SubpixelMap>> {
+        let Some(view) = self.view.filter(|_| self.settings.is_antialiased()) else {
+            return Ok(None);
+        };
+        let fault = |name: &str| Error::driver(name.to_owned());
+        let gone = |name: &str| {
+            let place = name.to_owned();
+            move |reason| Error::Card { place, reason }
+        };
+        // A scene that is at work still would be noted in place of this one.
+        self.driver.finish().map_err(fault(&self.name))?;
+        self.card.record_subpixels().map_err(gone(&self.name))?;
+        self.encode(view, None)?;
+        self.driver.finish().map_err(fault(&self.name))?;
+        let map = self.card.take_subpixels().map_err(gone(&self.name))?;
+        Ok(Some(map.unwrap_or_else(|| SubpixelMap::new(self.size[0], self.size[1]))))
+    }
+
     /// Draws the last frame once more, with all its draws cut to `area`, and returns what that cost; nothing before the
     /// first frame. The clear is not cut. The picture on the screen stays; the frame buffer behind it does not.
     ///
@@ -93,6 +118,42 @@ impl<B: Bus> Session<B> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::demos;
+    use crate::play::{Asked, Look};
+    use crate::scene::{CardSettings, SubpixelGrid};
+    use zga_device::Reason;
+
+    /// The map of a demo's first frame at a small size, as `card` has it.
+    fn mapped(demo: &str, card: CardSettings) -> Option<SubpixelMap> {
+        let mut scene = demos::find(demo).expect("a demo").build(0);
+        scene.size = [200, 150];
+        let mut session = Session::open(demo, &scene, &Asked { card, ..Asked::default() }).expect("a card");
+        assert_eq!(session.subpixels().expect("a card"), None, "there is no frame yet");
+        let (frame, _) = session.frame(&scene, Look::default()).expect("drawn");
+        let map = session.subpixels().expect("drawn");
+        let (again, _) = session.frame(&scene, Look::default()).expect("drawn");
+        assert_eq!(frame.hash, again.hash, "noting leaves no trace");
+        map
+    }
+
+    #[test]
+    fn subpixels_are_as_many_as_pixels_and_none_without_a_grid() {
+        let map = mapped("crossing", CardSettings::default()).expect("the demo has a grid");
+        assert_eq!((map.width, map.height, map.reasons.len()), (200, 150, 200 * 150));
+        assert_eq!(mapped("crossing", CardSettings { antialias: Some(SubpixelGrid::Off), ..Default::default() }), None);
+    }
+
+    #[test]
+    fn subpixels_of_the_demos_have_the_reasons_that_they_are_made_for() {
+        let count = |demo, card, reason| mapped(demo, card).map_or(0, |map| map.count(reason));
+        let plain = CardSettings::default();
+        assert!(count("crossing", plain, Reason::Crossing) > 50);
+        assert!(count("spokes", plain, Reason::Edge) > 50);
+        assert!(count("layers", plain, Reason::Layer) > 500);
+        assert_eq!(count("crossing", plain, Reason::Layer) + count("crossing", plain, Reason::Degraded), 0);
+        let small = CardSettings { subpixel_pool: Some(500), ..plain };
+        assert!(count("layers", small, Reason::Degraded) > 50);
+    }
 
     const WORDS: [i32; 6] = [-1, 5, i32::MIN, 0, -7, 9];
 
