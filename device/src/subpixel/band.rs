@@ -14,6 +14,7 @@
 
 use super::cover::{Row, Span};
 use super::gamma::Space;
+use super::lists::Lists;
 use super::map::Reason;
 use super::parts::Resolver;
 use super::piece::{Cover, Piece, extent};
@@ -35,8 +36,8 @@ pub struct Work {
     pub pieces: Vec<Piece>,
     /// What each of them covers, and where at most: first column and row, first beyond.
     pub covers: Vec<(Cover, [[i32; 2]; 2])>,
-    /// Fragments that cover a part.
-    pub partials: Vec<Fragment>,
+    /// Fragments as they are found.
+    pub lists: Lists,
     pub(super) spans: Vec<Span>,
     pub(super) rows: Vec<Row>,
     /// For each row the first columns of samples and the first beyond, on all its rows of samples.
@@ -175,7 +176,18 @@ impl Work {
         } else {
             dispatch!(level, simd => self.compare(simd, input));
         }
-        match grid {
+        self.find(level, input, counts);
+        if self.lists.count(input) {
+            // The masks are counted already.
+            self.find(level, input, &mut Counts::default());
+            self.lists.fit(input);
+            self.find(level, input, &mut Counts::default());
+        }
+    }
+
+    /// Finds the fragments that are not hidden.
+    fn find(&mut self, level: Level, input: &Input<'_>, counts: &mut Counts) {
+        match (input.setting.grid.columns(), input.setting.grid.rows()) {
             (4, _) => dispatch!(level, simd => self.masks::<_, 4, 4>(simd, input, counts)),
             (_, 4) => dispatch!(level, simd => self.masks::<_, 8, 4>(simd, input, counts)),
             _ => dispatch!(level, simd => self.masks::<_, 8, 8>(simd, input, counts)),
@@ -199,7 +211,7 @@ impl Work {
             let beyond = input.top + input.lines as i32;
             self.covers.push((cover, [[x, y.max(input.top)], [right, bottom.min(beyond)]]));
         }
-        self.partials.clear();
+        self.lists.begin(input);
         self.spans.clear();
         self.rows.clear();
         self.edges.clear();
@@ -239,7 +251,8 @@ impl Work {
                     let mask = mask::<C, R>(froms, tos, (x * C) as i32);
                     if mask != 0 || ((centre..centre_end).contains(&x) && !piece.layer) {
                         counts.masks += 1;
-                        self.partials.push(Fragment { mask, at: ((line * words) * 64 + x) as u32, piece: row.piece });
+                        let at = (line * words * 64 + x) as u32;
+                        self.lists.put(Fragment { mask, at, piece: row.piece });
                         self.active[line * words + x / 64] |= 1 << (x % 64);
                     }
                 }
@@ -253,7 +266,7 @@ impl Work {
         let (pitch, words) = (input.pitch(), input.words());
         let full = input.setting.grid.full();
         let below = below(input.setting.format);
-        let Work { pieces, partials, spans, active, far, .. } = self;
+        let Work { pieces, lists, spans, active, far, .. } = self;
         for layers in [true, false] {
             for span in spans.iter().filter(|span| pieces[span.piece as usize].layer == layers) {
                 if span.columns[0] == span.columns[1] {
@@ -275,7 +288,7 @@ impl Work {
                         if piece.plane.stored(value, below) <= far[line * pitch + x] {
                             *active |= 1 << (x % 64);
                             let at = (line * words * 64 + x) as u32;
-                            partials.push(Fragment { mask: full, at, piece: span.piece });
+                            lists.put(Fragment { mask: full, at, piece: span.piece });
                         }
                     }
                 }
@@ -283,7 +296,7 @@ impl Work {
         }
     }
 
-    /// Resolves the active pixels, whose fragments are in `partials`; the rest of the card's work on a band.
+    /// Resolves the active pixels, whose fragments are in `lists`; the rest of the card's work on a band.
     pub fn finish(&mut self, input: &Input<'_>, out: &mut Vec<Resolved>, counts: &mut Counts) {
         self.sort();
         self.shader.begin(input.setting, self.pieces.len());
@@ -301,7 +314,8 @@ impl Work {
                     left &= left - 1;
                     let list = &mut fragments[self.starts[number] as usize..self.starts[number + 1] as usize];
                     number += 1;
-                    if list.is_empty() {
+                    let rejected = self.lists.is_rejected((line * input.words() * 64 + x) as u32);
+                    if list.is_empty() && !rejected {
                         continue;
                     }
                     // Masks come before spans, each in order of submission.
@@ -309,7 +323,7 @@ impl Work {
                         list.sort_unstable_by_key(|fragment| fragment.piece);
                     }
                     let mut resolved = Resolved { x: x as u16, y: y as u16, colour: 0, reason: Reason::Degraded };
-                    if used + list.len() > input.setting.pool as usize {
+                    if rejected || used + list.len() > input.setting.pool as usize {
                         counts.degraded += 1;
                         out.push(resolved);
                         continue;
@@ -331,7 +345,7 @@ impl Work {
 
     /// Fragments by pixel: those of active pixel n, counted line by line, are `starts[n]..starts[n + 1]`.
     fn sort(&mut self) {
-        let Work { partials, fragments, starts, active, ranks, .. } = self;
+        let Work { lists: Lists { stored, .. }, fragments, starts, active, ranks, .. } = self;
         ranks.clear();
         let mut before = 0;
         for word in active.iter() {
@@ -344,16 +358,16 @@ impl Work {
         };
         starts.clear();
         starts.resize(before as usize + 2, 0);
-        for fragment in partials.iter() {
+        for fragment in stored.iter() {
             starts[rank(fragment) + 2] += 1;
         }
         for number in 2..starts.len() {
             starts[number] += starts[number - 1];
         }
         fragments.clear();
-        fragments.resize(partials.len(), Fragment::default());
+        fragments.resize(stored.len(), Fragment::default());
         // Each pixel's start moves on to the next one's, and so to its own place.
-        for fragment in partials.iter() {
+        for fragment in stored.iter() {
             let place = &mut starts[rank(fragment) + 1];
             fragments[*place as usize] = *fragment;
             *place += 1;

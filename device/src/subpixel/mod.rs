@@ -15,6 +15,7 @@
 //! | `bands` | items sorted into bands of lines |
 //! | [`band`] | masks of a band, active pixels and their lists of fragments |
 //! | `cover` | what is covered on its lines |
+//! | `lists` | fragments before they are sorted by pixel, in no more memory than the pool |
 //! | `hide` | what of it is hidden by what covers whole pixels |
 //! | [`specification`] | the same by definition, pixel by pixel |
 //! | [`search`](mod@search) | the nearest or the farthest sub-pixel of a mask |
@@ -44,6 +45,7 @@ pub mod gamma;
 pub mod grid;
 mod hide;
 mod layers;
+mod lists;
 pub mod map;
 mod parts;
 pub mod piece;

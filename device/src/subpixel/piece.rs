@@ -240,9 +240,14 @@ impl Piece {
             return false;
         }
         let corner = setting.grid.corner_offset();
-        let slant = |a: i64, b: i64, offset: i32| (a - b).abs() * i64::from(offset);
-        let reach =
-            (slant(self.plane.dx, other.plane.dx, corner.x) + slant(self.plane.dy, other.plane.dy, corner.y)) / 16 + 1;
+        // What has one depth a pixel may have gradients that mean nothing.
+        let gradient = |piece: &Piece| {
+            let level = matches!(piece.slope, Slope::Level);
+            if level { [0; 2] } else { [piece.plane.dx, piece.plane.dy] }
+        };
+        let (mine, others) = (gradient(self), gradient(other));
+        let slant = |c: usize, offset: i32| (mine[c] - others[c]).abs() * i64::from(offset);
+        let reach = (slant(0, corner.x) + slant(1, corner.y)) / 16 + 1;
         self.plane.value(x, y) - other.plane.value(x, y) > reach + (1 << self.below)
     }
 

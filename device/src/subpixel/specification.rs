@@ -12,6 +12,16 @@ use crate::hidden::z_buffer::specification::covers;
 /// Finds the active pixels of a band and their fragments.
 pub fn gather(work: &mut Work, input: &Input<'_>, counts: &mut Counts) {
     work.begin(input, counts);
+    find(work, input, counts);
+    if work.lists.count(input) {
+        // The masks are counted already.
+        find(work, input, &mut Counts::default());
+        work.lists.fit(input);
+        find(work, input, &mut Counts::default());
+    }
+}
+
+fn find(work: &mut Work, input: &Input<'_>, counts: &mut Counts) {
     for line in 0..input.lines {
         for x in 0..input.setting.size[0] as usize {
             pixel(work, input, x, line, counts);
@@ -77,6 +87,6 @@ fn pixel(work: &mut Work, input: &Input<'_>, x: usize, line: usize, counts: &mut
     if active {
         work.active[line * input.words() + x / 64] |= 1 << (x % 64);
         let fragments: Vec<_> = seen.iter().map(|&(_, piece, mask)| Fragment { mask, at, piece }).collect();
-        work.partials.extend(fragments);
+        fragments.into_iter().for_each(|fragment| work.lists.put(fragment));
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Scenes follow one another on one frame: each starts with the picture and the depths that the one before it left. Only
 //! the last has layers, because a pixel with layers can have two right levels, and what follows would have to start from
-//! either.
+//! either. For the same reason scripts of more than one scene average values: in linear light a mean of dark levels, where
+//! the curve is straight, can lie in the middle between two.
 
 use super::any::{format, rectangle, size, stack};
 use super::judge::{encode, shown, test};
@@ -263,7 +264,7 @@ pub fn script(most: u32, scenes: usize, layers: bool) -> impl Strategy<Value = S
                 pixels,
                 depthless,
                 gouraud: false,
-                subpixel,
+                subpixel: if early.is_empty() { subpixel } else { Subpixel { resolve: Resolve::Values, ..subpixel } },
                 scenes: early.into_iter().chain([last]).collect(),
             })
         })
