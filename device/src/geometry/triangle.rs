@@ -71,30 +71,14 @@ impl Triangle {
         Some((triangle, columns))
     }
 
-    /// The edges alone, on a grid whose columns and rows are 2^`pitch` u apart, walked from row `top` on where the
-    /// triangle begins above: so no walk is longer than the rows that are asked for. The plane is left empty. `None` if
-    /// no row of the grid from `top` on, or no column, is met.
+    /// The edges alone, on two grids whose columns and rows are 2^pitch u apart, walked from row `top` on where the
+    /// triangle begins above: so no walk is longer than the rows that are asked for. The planes are left empty. `None`
+    /// if no row of a grid from its `top` on, or no column, is met. A grid is its pitches in x and y, and `top`.
     #[must_use]
     #[inline(always)]
-    pub fn outline(v: &[ScreenVertex; 3], pitch: [u32; 2], top: i32) -> Option<Triangle> {
-        let [a, b, c] = [v[0].y, v[1].y, v[2].y];
-        let (low, high) = if b < a { (1, 0) } else { (0, 1) };
-        let above = if c < v[low].y { 2 } else { low };
-        let below = if c < v[high].y { high } else { 2 };
-        let (above, middle, below) = (&v[above], &v[3 - above - below], &v[below]);
-        let rows = [above.y, middle.y, below.y].map(|y| first_sample(y, pitch[1]).max(top));
-        let columns =
-            [v[0].x.min(v[1].x).min(v[2].x), v[0].x.max(v[1].x).max(v[2].x)].map(|x| first_sample(x, pitch[0]));
-        if rows[0] == rows[2] || columns[0] == columns[1] || doubled_area(&v[0], &v[1], &v[2]) == 0 {
-            return None;
-        }
-        Some(Triangle {
-            rows,
-            long: Edge::between(above, below, rows[0], pitch),
-            short: [Edge::between(above, middle, rows[0], pitch), Edge::between(middle, below, rows[1], pitch)],
-            plane: DepthPlane::default(),
-            steep: false,
-        })
+    pub fn outlines(v: &[ScreenVertex; 3], grids: [([u32; 2], i32); 2]) -> [Option<Triangle>; 2] {
+        let sides = Sides::new(v);
+        grids.map(|(pitch, top)| sides.outline(pitch, top))
     }
 
     /// Columns covered on row `y`, `[first, beyond)`; `y` in `rows[0]..rows[2]`.
@@ -107,6 +91,62 @@ impl Triangle {
         // Rounding keeps the order of the crossings, so the smaller one is the left one.
         [long.min(short), long.max(short)]
     }
+}
+
+/// A triangle's vertices from top to bottom, and what its edges have on any grid.
+struct Sides<'a> {
+    vertices: [&'a ScreenVertex; 3],
+    /// Least and greatest x.
+    extent: [i32; 2],
+    /// 1 / dy of the edges from top to bottom, to the middle, and from the middle to the bottom.
+    inverse: [f64; 3],
+    /// It has an area.
+    open: bool,
+}
+
+impl<'a> Sides<'a> {
+    #[inline(always)]
+    fn new(v: &'a [ScreenVertex; 3]) -> Self {
+        let [a, b, c] = [v[0].y, v[1].y, v[2].y];
+        let (low, high) = if b < a { (1, 0) } else { (0, 1) };
+        let above = if c < v[low].y { 2 } else { low };
+        let below = if c < v[high].y { high } else { 2 };
+        let vertices = [&v[above], &v[3 - above - below], &v[below]];
+        let [above, middle, below] = vertices;
+        Sides {
+            vertices,
+            extent: [v[0].x.min(v[1].x).min(v[2].x), v[0].x.max(v[1].x).max(v[2].x)],
+            inverse: [inverse_of(above, below), inverse_of(above, middle), inverse_of(middle, below)],
+            open: doubled_area(&v[0], &v[1], &v[2]) != 0,
+        }
+    }
+
+    #[inline(always)]
+    fn outline(&self, pitch: [u32; 2], top: i32) -> Option<Triangle> {
+        let [above, middle, below] = self.vertices;
+        let rows = [above.y, middle.y, below.y].map(|y| first_sample(y, pitch[1]).max(top));
+        let columns = self.extent.map(|x| first_sample(x, pitch[0]));
+        if rows[0] == rows[2] || columns[0] == columns[1] || !self.open {
+            return None;
+        }
+        let [long, upper, lower] = self.inverse;
+        Some(Triangle {
+            rows,
+            long: Edge::between(above, below, long, rows[0], pitch),
+            short: [
+                Edge::between(above, middle, upper, rows[0], pitch),
+                Edge::between(middle, below, lower, rows[1], pitch),
+            ],
+            plane: DepthPlane::default(),
+            steep: false,
+        })
+    }
+}
+
+/// 1 / dy of an edge from `a` down to `b`; of one that meets no row it means nothing.
+#[inline(always)]
+fn inverse_of(a: &ScreenVertex, b: &ScreenVertex) -> f64 {
+    1.0 / (i64::from(b.y) - i64::from(a.y)).max(1) as f64
 }
 
 /// Twice the signed area in u^2: (b - a) x (c - a), y down.
@@ -137,16 +177,15 @@ impl Edge {
     /// An edge that meets no row is never walked; what it holds then means nothing.
     #[inline(always)]
     fn new(a: &ScreenVertex, b: &ScreenVertex, row: i32) -> Edge {
-        Edge::between(a, b, row, [PIXEL.ilog2(); 2])
+        Edge::between(a, b, inverse_of(a, b), row, [PIXEL.ilog2(); 2])
     }
 
     /// The same on a grid whose columns and rows are 2^`pitch` u apart, rows as far as columns or farther, from any row
-    /// that the edge meets on.
+    /// that the edge meets on; `inverse` as [`inverse_of`] has it.
     #[inline(always)]
-    fn between(a: &ScreenVertex, b: &ScreenVertex, row: i32, pitch: [u32; 2]) -> Edge {
+    fn between(a: &ScreenVertex, b: &ScreenVertex, inverse: f64, row: i32, pitch: [u32; 2]) -> Edge {
         let [across, down] = pitch.map(|log| 1_i64 << log);
         let (dx, dy) = (i64::from(b.x) - i64::from(a.x), (i64::from(b.y) - i64::from(a.y)).max(1));
-        let inverse = 1.0 / dy as f64;
         let below = i64::from(row) * down + down / 2 - i64::from(a.y);
         // ceil((x_crossing - across / 2) / across) = floor(n / dy) with n below; both floors nest.
         let n = (((i64::from(a.x) - across / 2) * dy + below * dx) + (across * dy - 1)) >> pitch[0];
@@ -267,7 +306,8 @@ mod tests {
             v in [vertex(1 << 12), vertex(1 << 12), vertex(1 << 12)],
             pitch in prop::sample::select(vec![[6, 6], [5, 6], [5, 5], [8, 8]]), top in -130_i32..130,
         ) {
-            let set = Triangle::outline(&v, pitch, top);
+            let [set, twice] = Triangle::outlines(&v, [(pitch, top); 2]);
+            prop_assert_eq!(set, twice);
             let place = |c: i32, log: u32| i128::from(c) * (1 << log) + (1 << (log - 1));
             for y in top..top + 40 {
                 let span = set.filter(|t| (t.rows[0]..t.rows[2]).contains(&y)).map_or([0, 0], |t| t.span(y));
@@ -280,7 +320,7 @@ mod tests {
 
         #[test]
         fn outline_guard_band_equals_edge_functions(v in [vertex(1 << 23), vertex(1 << 23), vertex(1 << 23)], top in -262_144_i32..262_144) {
-            let set = Triangle::outline(&v, [5, 5], top);
+            let [_, set] = Triangle::outlines(&v, [([8, 8], top >> 3), ([5, 5], top)]);
             for y in (top..top + 128).step_by(9) {
                 let span = set.filter(|t| (t.rows[0]..t.rows[2]).contains(&y)).map_or([0, 0], |t| t.span(y));
                 for x in [span[0] - 1, span[0], span[1] - 1, span[1]] {

@@ -148,20 +148,20 @@ impl Work {
     ) {
         let columns = C as i32;
         let shift = C.ilog2();
-        let mut least = [froms[0], tos[0]];
-        let mut greatest = least;
+        // The left border is convex and the right one concave: what all rows cover, the first and the last do.
+        let [inner_from, inner_to] = [froms[0].max(froms[R - 1]), tos[0].min(tos[R - 1])];
+        let (mut least, mut greatest) = (froms[0], tos[0]);
         for k in 1..R {
-            least = [least[0].min(froms[k]), least[1].min(tos[k])];
-            greatest = [greatest[0].max(froms[k]), greatest[1].max(tos[k])];
+            (least, greatest) = (least.min(froms[k]), greatest.max(tos[k]));
         }
-        let (mut first, mut beyond) = (least[0] >> shift, (greatest[1] + columns - 1) >> shift);
+        let (mut first, mut beyond) = (least >> shift, (greatest + columns - 1) >> shift);
         if first >= beyond {
             (first, beyond) = (centre[0], centre[1]);
             if first >= beyond {
                 return;
             }
         }
-        let mut whole = [(greatest[0] + columns - 1) >> shift, least[1] >> shift];
+        let mut whole = [(inner_from + columns - 1) >> shift, inner_to >> shift];
         if whole[0] < whole[1] {
             self.span(input, number, y, whole);
         } else {

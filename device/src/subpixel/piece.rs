@@ -126,8 +126,7 @@ impl Piece {
     fn set_up(&mut self, setting: &Setting, item: &Item, draw: &ItemDraw, top: i32) -> Cover {
         let v = &item.vertices;
         let rows = setting.grid.rows() as i32;
-        let samples = Triangle::outline(v, setting.pitch, top * rows);
-        let centres = Triangle::outline(v, [PIXEL.ilog2(); 2], top);
+        let [samples, centres] = Triangle::outlines(v, [(setting.pitch, top * rows), ([PIXEL.ilog2(); 2], top)]);
         if samples.is_none() && centres.is_none() {
             return Cover::Nothing;
         }

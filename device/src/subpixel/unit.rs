@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError};
 use zga_firmware::Stopped;
 
 /// Bands of a thread between two stop points.
-const GROUP: usize = 8;
+const GROUP: usize = 24;
 
 /// Memory of the unit; empty until a scene calls for it.
 #[derive(Debug, Default)]
