@@ -7,7 +7,7 @@ use super::ScreenVertex;
 use super::clip::{Polygon, clip_line};
 use super::fetch::Fetch;
 use super::line::Line;
-use super::plane::{Axis, DepthPlane};
+use super::plane::DepthPlane;
 use super::transform::Transform;
 use super::triangle::Triangle;
 use std::ops::Range;
@@ -284,10 +284,7 @@ impl Shape {
     pub fn line_or_point_draws(&self, x: i32, y: i32) -> bool {
         match self {
             Shape::Triangle(..) => false,
-            Shape::Line(line, _) => {
-                let (step, minor) = if line.axis == Axis::X { (x, y) } else { (y, x) };
-                (line.steps[0]..line.steps[1]).contains(&step) && line.minor_at(step) == minor
-            }
+            Shape::Line(line, _) => line.draws(x, y),
             Shape::Point(point, _) => point.pixel == [x, y],
         }
     }

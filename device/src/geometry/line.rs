@@ -72,6 +72,13 @@ impl Line {
         (self.minor.wrapping_add(i64::from(step - self.steps[0]).wrapping_mul(self.slope)) >> WALK) as i32
     }
 
+    /// Whether the line draws pixel (`x`, `y`).
+    #[must_use]
+    pub fn draws(&self, x: i32, y: i32) -> bool {
+        let (step, minor) = if self.axis == Axis::X { (x, y) } else { (y, x) };
+        (self.steps[0]..self.steps[1]).contains(&step) && self.minor_at(step) == minor
+    }
+
     /// Steps of an x-major line inside `columns`, `[first, beyond)`.
     #[must_use]
     pub fn steps_inside(&self, columns: [i32; 2]) -> [i32; 2] {

@@ -121,11 +121,6 @@ impl Work {
             let [from, to] = span.columns.map(usize::from);
             self.stacked[line + from..line + to].iter_mut().for_each(|n| *n = n.saturating_add(count));
         }
-        self.activate_covered(input);
-    }
-
-    /// Makes pixels with two covers active.
-    pub fn activate_covered(&mut self, input: &Input<'_>) {
         for line in 0..input.lines {
             for x in 0..input.setting.size[0] as usize {
                 if self.stacked[line * input.pitch() + x] >= 2 {

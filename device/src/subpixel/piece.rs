@@ -11,6 +11,7 @@ use crate::geometry::line::Line;
 use crate::geometry::plane::{DepthPlane, WidePlane, below};
 use crate::geometry::triangle::{Triangle, doubled_area};
 use crate::geometry::{CENTRE, PIXEL};
+use crate::hidden::z_buffer::specification::covers_place;
 use crate::shading::plane::{ColourPlane, ColourSource, Interpolation};
 use zga_abi::format::SubpixelDepth;
 
@@ -272,19 +273,9 @@ impl Piece {
     /// the specification.
     #[must_use]
     pub fn mask_by_edges(&self, setting: &Setting, item: &Item, x: i32, y: i32) -> u64 {
-        let v = &item.vertices;
-        let order = if doubled_area(&v[0], &v[1], &v[2]) > 0 { [0, 1, 2] } else { [0, 2, 1] };
         let covers = |sample: u32| {
             let [u, w] = setting.grid.position(sample);
-            let (px, py) = (i64::from(x) * 256 + i64::from(u), i64::from(y) * 256 + i64::from(w));
-            (0..3).all(|k| {
-                let (a, b) = (&v[order[k]], &v[order[(k + 1) % 3]]);
-                let (dx, dy) = (i64::from(b.x) - i64::from(a.x), i64::from(b.y) - i64::from(a.y));
-                let e = dx * (py - i64::from(a.y)) - dy * (px - i64::from(a.x));
-                // An edge that is neither left (going up) nor top (going right) does not own its points.
-                let owner = dy < 0 || (dy == 0 && dx > 0);
-                e - i64::from(!owner) >= 0
-            })
+            covers_place(&item.vertices, i64::from(x * PIXEL + u), i64::from(y * PIXEL + w))
         };
         (0..setting.grid.samples()).filter(|&sample| covers(sample)).map(|sample| setting.grid.sample_bit(sample)).sum()
     }

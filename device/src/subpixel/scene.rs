@@ -186,15 +186,19 @@ impl Scene {
             Some(_) => Rule::InOrder,
         };
         self.add_rule(rule);
-        if self.draws.last() != Some(&draw) {
-            // A draw that has left no item leaves its place too: there are never more draws than items, and one.
-            let used = self.items.last().map_or(0, |item| item.draw as usize + 1);
-            self.draws.truncate(used);
-            self.draws.push(draw);
-        }
-        let draw = self.draws.len() as u32 - 1;
+        let draw = self.place(draw);
         let translucent = blend.then_some(interpolation);
         Some(Taken { items: &mut self.items, draw, masked, translucent })
+    }
+
+    /// The place of what the next items share. What has left no item leaves its place too: there are never more draws
+    /// than items, and one.
+    fn place(&mut self, draw: ItemDraw) -> u32 {
+        if self.draws.last() != Some(&draw) {
+            self.draws.truncate(self.items.last().map_or(0, |item| item.draw as usize + 1));
+            self.draws.push(draw);
+        }
+        self.draws.len() as u32 - 1
     }
 
     fn add_rule(&mut self, rule: Rule) {
@@ -230,8 +234,7 @@ impl Scene {
             return;
         }
         self.add_rule(Rule::InOrder);
-        self.draws.truncate(self.items.last().map_or(0, |item| item.draw as usize + 1));
-        self.draws.push(ItemDraw {
+        let draw = self.place(ItemDraw {
             test: None,
             interpolation: Interpolation::Flat,
             blend: false,
@@ -240,7 +243,6 @@ impl Scene {
             colour: clear.colour,
             depth: clear.depth.map(|depth| depth as i32),
         });
-        let draw = self.draws.len() as u32 - 1;
         self.items.push(Item { vertices: [ScreenVertex::default(); 3], draw, kind: Kind::Clear });
     }
 }

@@ -42,11 +42,7 @@ fn mask(input: &Input<'_>, piece: &Piece, (cover, area): &(Cover, [[i32; 2]; 2])
         Cover::Nothing => 0,
         Cover::Samples(_) => piece.mask_by_edges(input.setting, item, x, y),
         Cover::Centres(_) => whole(covers(&item.vertices, x, y)),
-        Cover::Line(line) => {
-            let steps = if line.axis == crate::geometry::plane::Axis::X { [x, y] } else { [y, x] };
-            let [step, minor] = steps;
-            whole((line.steps[0]..line.steps[1]).contains(&step) && line.minor_at(step) == minor)
-        }
+        Cover::Line(line) => whole(line.draws(x, y)),
         Cover::Pixel(place) => whole(*place == [x, y]),
         Cover::All => grid.full(),
     }

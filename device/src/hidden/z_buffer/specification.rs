@@ -137,7 +137,12 @@ fn put(setting: &Setting, row: &mut [u32], x: usize, colour: u32) {
 /// Whether the centre of pixel (`x`, `y`) lies in the triangle, by edge functions and the top-left rule.
 #[must_use]
 pub fn covers(v: &[ScreenVertex; 3], x: i32, y: i32) -> bool {
-    let (px, py) = (i64::from(x) * 256 + 128, i64::from(y) * 256 + 128);
+    covers_place(v, i64::from(x) * 256 + 128, i64::from(y) * 256 + 128)
+}
+
+/// The same for any place, in u.
+#[must_use]
+pub fn covers_place(v: &[ScreenVertex; 3], px: i64, py: i64) -> bool {
     let area = doubled_area(&v[0], &v[1], &v[2]);
     let order = if area > 0 { [0, 1, 2] } else { [0, 2, 1] };
     area != 0
