@@ -112,3 +112,29 @@ fn layers_make_the_pixels_active_that_show_them() {
         assert_eq!(active, [64, 0], "{subpixel:?} {path:?}");
     }
 }
+
+#[test]
+fn lists_that_the_pool_has_no_room_for_leave_the_paths_pixels_and_are_counted() {
+    for (subpixel, path) in everywhere() {
+        // Each line has one pixel on the diagonal, with two fragments.
+        let with_pool = |pool: u32| {
+            let (picture, events) = events(Subpixel { pool, ..subpixel }, path, |screen| {
+                let [mut first, second] = quad(5);
+                if let Primitive::Triangle(vertices) = &mut first {
+                    *vertices = vertices.map(|vertex| vertex.coloured([0, 0, 0, 255]));
+                }
+                screen.draw(&[first, second], &State::masked());
+            });
+            let of_unit = ["pixels_active", "pixels_degraded", "fragments", "pool_peak_bytes"];
+            (picture.colour, of_unit.map(|name| events[&format!("subpixel.{name}") as &str]))
+        };
+        let (smooth, roomy) = with_pool(2);
+        let (plain, tight) = with_pool(1);
+
+        let lines = SIDE as u64;
+        assert_eq!(roomy, [lines, 0, 2 * lines, 32], "{subpixel:?} {path:?}");
+        assert_eq!(tight, [0, lines, 0, 0], "{subpixel:?} {path:?}");
+        assert!(plain.iter().all(|&pixel| pixel == 0xFF00_0000 || pixel == 0xFFC8_6432), "{subpixel:?} {path:?}");
+        assert_eq!(smooth.iter().zip(&plain).filter(|(a, b)| a != b).count(), SIDE as usize, "{subpixel:?} {path:?}");
+    }
+}
