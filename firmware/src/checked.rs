@@ -6,8 +6,9 @@
 use core::ops::Range;
 use zga_abi::Effects;
 use zga_abi::format::{
-    DepthFormat, DepthFunction, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid,
-    SubpixelResolve, TokenColour, TokenPorts, Topology, ZaPrediction,
+    BitmapFormat, BlendMode, DepthFormat, DepthFunction, EndTest, Fidelity, FogFunction, HiddenSurface, PixelFormat,
+    RasterOperation, StretchFilter, SubpixelDepth, SubpixelGrid, SubpixelResolve, TextureFilter, TextureFormat,
+    TextureFunction, TokenColour, TokenPorts, Topology, ZaPrediction,
 };
 
 /// A rectangle of pixels: `x`, `y` inclusive, `right`, `bottom` exclusive.
@@ -88,7 +89,7 @@ pub struct Target {
     pub systolic: SystolicSetting,
     /// Width and height of a tile of the tile unit, pixels: 4, 8, 16, 32 or 64.
     pub tile: [u32; 2],
-    /// Sub-pixel mask unit; none where SUBPIXEL_GRID is off. Only with one do draws call for ANTI_ALIAS or BLEND.
+    /// Sub-pixel mask unit; none where SUBPIXEL_GRID is off. Only with one do draws call for ANTI_ALIAS.
     pub subpixel: Option<SubpixelSetting>,
 }
 
@@ -172,10 +173,10 @@ pub struct SubpixelSetting {
 }
 
 /// State of one draw.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DrawState {
-    /// Effects called; DEPTH only where the target has a Z buffer or the path needs none, ANTI_ALIAS and
-    /// BLEND only where the target has a grid.
+    /// Effects called; DEPTH only where the target has a Z buffer or the path needs none, ANTI_ALIAS only where the
+    /// target has a grid.
     pub effects: Effects,
     /// Depth test.
     pub depth_function: DepthFunction,
@@ -191,6 +192,131 @@ pub struct DrawState {
     pub line_width: u32,
     /// Side of points drawn with ANTI_ALIAS: u8.8, pixels, 1..=0xFFFF.
     pub point_size: u32,
+    /// Where TEXTURE is called: the texture.
+    pub texture: Option<Texture>,
+    /// Where PUNCH_THROUGH is called, and TEXTURE with it: texels with an alpha below this are holes.
+    pub punch_through: Option<u8>,
+    /// Where LIGHT is called: lights and material.
+    pub light: Option<Lighting>,
+    /// Where FOG is called and its function is not none: fog.
+    pub fog: Option<Fog>,
+    /// How translucent fragments are combined, where BLEND is called.
+    pub blend: BlendMode,
+}
+
+/// A texture in video memory, and how it is read.
+///
+/// # Invariants
+/// All levels, and the palette where the format has one, lie in video memory; the window lies in the texture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Texture {
+    /// First byte of level 0, a multiple of 64.
+    pub base: u32,
+    /// Width and height of level 0, texels, 1..=16384.
+    pub size: [u32; 2],
+    /// How texels are stored.
+    pub format: TextureFormat,
+    /// Levels in memory, 1 ..= 1 + floor(log2(the larger side)).
+    pub levels: u32,
+    /// First byte of the palette, where the format has one.
+    pub palette: u32,
+    /// First texel used of level 0.
+    pub offset: [u32; 2],
+    /// Texels used of level 0, at least 1.
+    pub window: [u32; 2],
+    /// Repeated in x and y.
+    pub repeat: [bool; 2],
+    /// Mirrored at every other repetition in x and y.
+    pub mirror: [bool; 2],
+    /// How it is read between texels.
+    pub filter: TextureFilter,
+    /// How it is combined with the polygon's colour.
+    pub function: TextureFunction,
+    /// RGBA of the function `blend`.
+    pub colour: u32,
+    /// s7.8, levels: added to the level of detail.
+    pub bias: i32,
+    /// MIP_MAP is called: levels beyond the first are in use.
+    pub mip_map: bool,
+}
+
+impl Texture {
+    /// Width and height of level `level`, texels.
+    #[must_use]
+    pub const fn level_size(&self, level: u32) -> [u32; 2] {
+        [level_side(self.size[0], level), level_side(self.size[1], level)]
+    }
+
+    /// Words of a row of level `level`.
+    #[must_use]
+    pub const fn row_words(&self, level: u32) -> u32 {
+        (self.level_size(level)[0] * self.format.bits()).div_ceil(32)
+    }
+
+    /// First byte of level `level`, counted from `base`; of the first level that is not there, the size of the texture in
+    /// bytes, rounded up to 64.
+    #[must_use]
+    pub const fn level_offset(&self, level: u32) -> u64 {
+        let (mut offset, mut below) = (0, 0);
+        while below < level {
+            let bytes = 4 * self.row_words(below) as u64 * self.level_size(below)[1] as u64;
+            offset += bytes.next_multiple_of(64);
+            below += 1;
+        }
+        offset
+    }
+
+    /// Bytes of all levels, from `base` on.
+    #[must_use]
+    pub const fn bytes(&self) -> u64 {
+        let last = self.levels - 1;
+        self.level_offset(last) + 4 * self.row_words(last) as u64 * self.level_size(last)[1] as u64
+    }
+}
+
+/// Texels along a side of level `level`.
+const fn level_side(side: u32, level: u32) -> u32 {
+    if side >> level == 0 { 1 } else { side >> level }
+}
+
+/// Lights and the material they fall on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lighting {
+    /// At each pixel shaded; else at each vertex.
+    pub per_pixel: bool,
+    /// Normals that point away from the viewer are turned round.
+    pub two_sided: bool,
+    /// Highlights are seen from the eye; else from infinity along +z.
+    pub local_viewer: bool,
+    /// First byte of the light records, a multiple of 64; all of them lie in video memory.
+    pub lights: u32,
+    /// Lights, 0..=256.
+    pub count: u32,
+    /// RGBA of the light that is everywhere.
+    pub ambient: u32,
+    /// RGBA of highlights.
+    pub specular: u32,
+    /// RGBA that the material gives off.
+    pub emission: u32,
+    /// Sharpness of highlights, 0..=128.
+    pub shininess: f32,
+}
+
+/// Fog.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fog {
+    /// Never [`FogFunction::None`].
+    pub function: FogFunction,
+    /// Finite, not negative.
+    pub density: f32,
+    /// Finite, positive.
+    pub end: f32,
+    /// kz, finite.
+    pub cue_scale: f32,
+    /// cz, finite.
+    pub cue_offset: f32,
+    /// RGBA.
+    pub colour: u32,
 }
 
 /// A run of words, in the packet or in video memory.
@@ -214,7 +340,11 @@ pub struct Draw<'a> {
     pub topology: Topology,
     /// A vertex is x, y, z (f32 bits) and, if set, a colour word.
     pub coloured: bool,
-    /// Vertex words: `vertex_count` times 3 or 4.
+    /// Then, if set, a normal: 3 f32.
+    pub normals: bool,
+    /// Then, if set, texture coordinates: 2 f32.
+    pub coordinates: bool,
+    /// Vertex words: `vertex_count` times those of a vertex.
     pub vertices: Words<'a>,
     /// Number of vertices.
     pub vertex_count: u32,
@@ -249,6 +379,119 @@ pub struct Copy {
     pub source: Surface,
     /// To: `base` is the first pixel written.
     pub destination: Surface,
+}
+
+/// Pixels in video memory for the bitmap unit, in any of its formats.
+///
+/// # Invariants
+/// `base` and `pitch` are multiples of the pixel's bytes; `pitch` holds a row, so rows lie apart;
+/// `base + (height - 1) * pitch + width * format.bytes()` lies in video memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// First byte of the first pixel.
+    pub base: u32,
+    /// Bytes from a row to the next.
+    pub pitch: u32,
+    /// Pixels, 1..=16384.
+    pub width: u32,
+    /// Pixels, 1..=16384.
+    pub height: u32,
+    /// Format of a pixel.
+    pub format: BitmapFormat,
+}
+
+impl Image {
+    /// From its first byte to the first beyond its last row.
+    #[must_use]
+    pub const fn bytes(&self) -> Range<u64> {
+        self.row(0).start..self.row(self.height as u64 - 1).end
+    }
+
+    /// Bytes of row `row`.
+    #[must_use]
+    pub const fn row(&self, row: u64) -> Range<u64> {
+        let start = self.base as u64 + row * self.pitch as u64;
+        start..start + self.width as u64 * self.format.bytes() as u64
+    }
+
+    /// A byte is a pixel's of both; gaps between rows do not count.
+    #[must_use]
+    pub const fn shares_bytes(&self, other: &Image) -> bool {
+        let (mut mine, mut others) = (0, 0);
+        // Both sets of rows rise: the one that ends first meets nothing more of the other.
+        while mine < self.height as u64 && others < other.height as u64 {
+            let (a, b) = (self.row(mine), other.row(others));
+            if a.end <= b.start {
+                mine += 1;
+            } else if b.end <= a.start {
+                others += 1;
+            } else {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// What a raster operation takes for the source bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CombineSource {
+    /// The same stored pixel everywhere; bits beyond the format do not count.
+    Value(u32),
+    /// A rectangle of the destination's size and format; overlap must come out right.
+    Image(Image),
+}
+
+/// A raster operation on a rectangle.
+///
+/// # Invariants
+/// It changes something: the operation is not no-operation, and `planes` has a bit of the format and none beyond.
+/// The source is an image only where the operation reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Combine {
+    /// From.
+    pub source: CombineSource,
+    /// To: `base` is the first pixel written.
+    pub destination: Image,
+    /// What becomes of a bit.
+    pub operation: RasterOperation,
+    /// Bits of the stored pixel that may change.
+    pub planes: u32,
+}
+
+impl Combine {
+    /// What is there has to be read: the operation depends on it, or some of its bits stay.
+    #[must_use]
+    pub const fn reads_destination(&self) -> bool {
+        self.operation.reads_destination() || self.planes != self.destination.format.bits()
+    }
+}
+
+/// A copy between two rectangles of the same size; overlap must come out right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Convert {
+    /// From: `base` is the first pixel read.
+    pub source: Image,
+    /// To: `base` is the first pixel written.
+    pub destination: Image,
+}
+
+/// A stretch of a rectangle over a whole of another size, of which a part is written.
+///
+/// # Invariants
+/// The part lies in the whole, and shares no byte with the source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stretch {
+    /// From: all of it is stretched over the whole.
+    pub source: Image,
+    /// To: the part.
+    pub destination: Image,
+    /// Width and height of the whole, pixels, 1..=16384.
+    pub whole: [u32; 2],
+    /// Column and row of the part's first pixel in the whole.
+    pub part: [u32; 2],
+    /// How it is read between pixels.
+    pub filter: StretchFilter,
 }
 
 /// Rows of words in video memory.

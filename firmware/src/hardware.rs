@@ -1,6 +1,6 @@
 //! The card's units as the firmware sees them.
 
-use crate::checked::{Clear, Copy, Draw, DrawState, Fill, Rows, Target, Words};
+use crate::checked::{Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Stretch, Target, Words};
 use zga_abi::{Reg, Units};
 
 /// Why a unit stopped before its work was done.
@@ -53,6 +53,15 @@ pub trait Hardware {
 
     /// Copies a rectangle.
     fn copy(&mut self, copy: &Copy);
+
+    /// Combines a value or a rectangle with what is there.
+    fn combine(&mut self, combine: &Combine);
+
+    /// Copies a rectangle into another format.
+    fn convert(&mut self, convert: &Convert);
+
+    /// Stretches a rectangle to another size.
+    fn stretch(&mut self, stretch: &Stretch);
 
     /// Writes `words` to rows in video memory; `words` has `rows.words * rows.rows` of them.
     fn upload(&mut self, rows: &Rows, words: &[u32]);

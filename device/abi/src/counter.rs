@@ -38,7 +38,7 @@ impl Counter {
     /// The counter holds the largest of its events, not their sum.
     #[must_use]
     pub const fn is_maximum(self) -> bool {
-        matches!(self, Counter::SubpixelPoolPeakBytes)
+        matches!(self, Counter::SubpixelPoolPeakBytes | Counter::TextureDecodedBytes)
     }
 }
 
@@ -48,7 +48,7 @@ counters! {
     CyclesGeometry "cycles.geometry" "Clocks of transform, clip and setup.",
     CyclesZBuffer "cycles.z_buffer" "Clocks of the Z buffer unit: edge walk, depth compare, depth and colour write.",
     CyclesShading "cycles.shading" "Clocks of the colour interpolators.",
-    CyclesBitmap "cycles.bitmap" "Clocks of fills, copies and transfers.",
+    CyclesBitmap "cycles.bitmap" "Clocks of fills, copies, conversions, stretches and transfers.",
     CyclesScanout "cycles.scanout" "Clocks of frame composition.",
     FrontendPackets "frontend.packets" "Packets executed.",
     FrontendWords "frontend.words" "Words of packets executed, headers included.",
@@ -86,7 +86,7 @@ counters! {
     TileSortMemoryBytes "tile.sort_memory_bytes" "Bytes of Y_INDEX, X index and sort buffer that scenes needed, summed over scenes.",
     TileFragmentsNotStored "tile.fragments_not_stored" "Records that cutting each polygon into tiles would have stored beyond one a polygon.",
     CyclesSubpixel "cycles.subpixel" "Clocks of the sub-pixel mask unit: masks, searches, depths, merges, packing, pixels written.",
-    SubpixelMasks "subpixel.masks" "Masks made: of each pixel that a triangle covers in part, or at its centre alone, where nothing that covers the whole pixel hides it, and one for each triangle, in which its edges begin.",
+    SubpixelMasks "subpixel.masks" "Masks made: one for each fragment of an active pixel that covers a part of it, or its centre alone, and one for each triangle, in which its edges begin.",
     SubpixelSearches "subpixel.searches" "Searches of masks: two for a fragment, for its nearest and its farthest depth.",
     SubpixelSearchSteps "subpixel.search_steps" "Bands of samples that those searches looked at.",
     SubpixelDepthEvaluations "subpixel.depth_evaluations" "Depths of fragments evaluated, at samples or at the pixel's centre.",
@@ -96,4 +96,17 @@ counters! {
     SubpixelFragments "subpixel.fragments" "Fragments stored in the lists of pixels.",
     SubpixelPoolPeakBytes "subpixel.pool_peak_bytes" "Most bytes that the lists of one line of pixels took, 16 a fragment: a maximum, not a sum.",
     SubpixelPixelsDegraded "subpixel.pixels_degraded" "Pixels that kept one sample because the pool had no room for their list.",
+    CyclesTexture "cycles.texture" "Clocks of the texture unit: 1 a texel looked up, 2 a trilinear one.",
+    CyclesLayers "cycles.layers" "Clocks of blending without a sub-pixel grid: fragments tested, blended, compared by a sort.",
+    TextureTexels "texture.texels" "Texels looked up: one for each textured pixel shaded or fragment tested for a hole.",
+    TextureFetches "texture.fetches" "Texels read from memory: 1, 4 or 8 a look-up.",
+    TextureDecodedBytes "texture.decoded_bytes" "Most bytes of texels that the texture unit held: a maximum, not a sum.",
+    TextureHoles "texture.holes" "Fragments that were holes of their texture, whatever their depth.",
+    ShadingLights "shading.lights" "Lights evaluated, at vertices or pixels.",
+    ShadingFogged "shading.fogged" "Pixels that fog was mixed into.",
+    LayersFragments "layers.fragments" "Translucent fragments that came to the depth test, without a sub-pixel grid.",
+    LayersBlended "layers.blended" "Translucent fragments blended into the frame, without a sub-pixel grid.",
+    LayersSortedPixels "layers.sorted_pixels" "Pixels whose translucent fragments had to be sorted one by one.",
+    BitmapCombined "bitmap.combined" "Pixels that a raster operation or a plane mask combined with what was there.",
+    BitmapStretched "bitmap.stretched" "Pixels that a stretch made.",
 }

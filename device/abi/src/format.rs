@@ -80,6 +80,134 @@ impl PixelFormat {
 }
 
 enumeration! {
+    /// Format of a pixel of the bitmap unit: those of frame buffers, and coverage alone.
+    BitmapFormat {
+        /// As [`PixelFormat::Xrgb8888`].
+        Xrgb8888 = 0 "xrgb8888",
+        /// As [`PixelFormat::Argb8888`].
+        Argb8888 = 1 "argb8888",
+        /// As [`PixelFormat::Rgb565`].
+        Rgb565 = 2 "rgb565",
+        /// 8 bits: alpha. Its colour reads as black.
+        Alpha8 = 3 "alpha8",
+    }
+}
+
+impl BitmapFormat {
+    /// The format of a frame buffer that it is; `None` for coverage alone.
+    #[must_use]
+    pub const fn pixel_format(self) -> Option<PixelFormat> {
+        PixelFormat::from_code(self.code())
+    }
+
+    /// Bytes of a pixel.
+    #[must_use]
+    pub const fn bytes(self) -> u32 {
+        match self.pixel_format() {
+            Some(format) => format.bytes(),
+            None => 1,
+        }
+    }
+
+    /// All bits of a stored pixel.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        u32::MAX >> (32 - 8 * self.bytes())
+    }
+
+    /// The stored pixel of an RGBA colour.
+    #[must_use]
+    pub const fn encode(self, colour: [u8; 4]) -> u32 {
+        match self.pixel_format() {
+            Some(format) => format.encode(colour),
+            None => colour[3] as u32,
+        }
+    }
+
+    /// The RGBA colour of a stored pixel; bits beyond the format do not count.
+    #[must_use]
+    pub const fn decode(self, pixel: u32) -> [u8; 4] {
+        match self.pixel_format() {
+            Some(format) => format.decode(pixel),
+            None => [0, 0, 0, pixel as u8],
+        }
+    }
+}
+
+impl From<PixelFormat> for BitmapFormat {
+    fn from(format: PixelFormat) -> BitmapFormat {
+        match format {
+            PixelFormat::Xrgb8888 => BitmapFormat::Xrgb8888,
+            PixelFormat::Argb8888 => BitmapFormat::Argb8888,
+            PixelFormat::Rgb565 => BitmapFormat::Rgb565,
+        }
+    }
+}
+
+enumeration! {
+    /// What becomes of a destination bit d under a source bit s, in the numbering of the X Window System: bit 0 of
+    /// the code is the result for s = d = 1, bit 1 for s = 1, d = 0, bit 2 for s = 0, d = 1, bit 3 for s = d = 0.
+    RasterOperation {
+        /// 0.
+        Clear = 0 "clear",
+        /// s and d.
+        And = 1 "and",
+        /// s and not d.
+        AndReverse = 2 "and-reverse",
+        /// s.
+        Copy = 3 "copy",
+        /// not s, and d.
+        AndInverted = 4 "and-inverted",
+        /// d: nothing changes.
+        NoOperation = 5 "no-operation",
+        /// s or d, not both.
+        Xor = 6 "xor",
+        /// s or d.
+        Or = 7 "or",
+        /// neither s nor d.
+        Nor = 8 "nor",
+        /// s equals d.
+        Equivalent = 9 "equivalent",
+        /// not d.
+        Invert = 10 "invert",
+        /// s or not d.
+        OrReverse = 11 "or-reverse",
+        /// not s.
+        CopyInverted = 12 "copy-inverted",
+        /// not s, or d.
+        OrInverted = 13 "or-inverted",
+        /// not both s and d.
+        Nand = 14 "nand",
+        /// 1.
+        Set = 15 "set",
+    }
+}
+
+impl RasterOperation {
+    /// The result depends on the source.
+    #[must_use]
+    pub const fn reads_source(self) -> bool {
+        self.code() & 3 != self.code() >> 2
+    }
+
+    /// The result depends on what is there.
+    #[must_use]
+    pub const fn reads_destination(self) -> bool {
+        self.code() & 5 != (self.code() >> 1) & 5
+    }
+}
+
+enumeration! {
+    /// How a stretch reads between the pixels of its source.
+    StretchFilter {
+        /// The nearest pixel.
+        Nearest = 0 "nearest",
+        /// Four pixels, weighed by their distances in 1/256 pixel.
+        Bilinear = 1 "bilinear",
+    }
+}
+
+enumeration! {
     /// Comparison of a fragment's depth (left) with the stored depth (right).
     DepthFunction {
         /// Nothing passes.
@@ -248,6 +376,115 @@ enumeration! {
         Values = 0 "values",
         /// Linear light, through the sRGB curve.
         Linear = 1 "linear",
+    }
+}
+
+enumeration! {
+    /// How texels are stored.
+    TextureFormat {
+        /// 32 bits: red in 7:0, green, blue, alpha in 31:24.
+        Rgba8888 = 0 "rgba8888",
+        /// 16 bits: 15:11 red, 10:5 green, 4:0 blue; opaque.
+        Rgb565 = 1 "rgb565",
+        /// 16 bits: 15 alpha, 14:10 red, 9:5 green, 4:0 blue.
+        Rgba5551 = 2 "rgba5551",
+        /// 16 bits: 15:12 alpha, 11:8 red, 7:4 green, 3:0 blue.
+        Rgba4444 = 3 "rgba4444",
+        /// 8 bits: one of 256 colours of a palette.
+        Palette8 = 4 "palette8",
+        /// 4 bits: one of 16 colours of a palette; the low half of a byte is the first texel.
+        Palette4 = 5 "palette4",
+    }
+}
+
+impl TextureFormat {
+    /// Bits of a texel.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        match self {
+            TextureFormat::Rgba8888 => 32,
+            TextureFormat::Rgb565 | TextureFormat::Rgba5551 | TextureFormat::Rgba4444 => 16,
+            TextureFormat::Palette8 => 8,
+            TextureFormat::Palette4 => 4,
+        }
+    }
+
+    /// Colours of its palette; 0 without one.
+    #[must_use]
+    pub const fn palette(self) -> u32 {
+        match self {
+            TextureFormat::Palette8 => 256,
+            TextureFormat::Palette4 => 16,
+            _ => 0,
+        }
+    }
+}
+
+enumeration! {
+    /// How a texture is read between texels.
+    TextureFilter {
+        /// The nearest texel of the nearest level.
+        Nearest = 0 "nearest",
+        /// Four texels of the nearest level.
+        Bilinear = 1 "bilinear",
+        /// Four texels of each of two levels.
+        Trilinear = 2 "trilinear",
+    }
+}
+
+enumeration! {
+    /// How a texel is combined with the colour of the polygon.
+    TextureFunction {
+        /// The texel.
+        Replace = 0 "replace",
+        /// Their product.
+        Modulate = 1 "modulate",
+        /// The texel over the colour, by the texel's alpha.
+        Decal = 2 "decal",
+        /// From the colour to TEXTURE_COLOUR, by the texel.
+        Blend = 3 "blend",
+    }
+}
+
+enumeration! {
+    /// How a translucent fragment is combined with what lies behind it.
+    BlendMode {
+        /// Over it by its alpha.
+        Alpha = 0 "alpha",
+        /// Added, by its alpha.
+        Add = 1 "add",
+        /// Multiplied, by its alpha.
+        Multiply = 2 "multiply",
+        /// Over it, its colour multiplied by alpha already.
+        Premultiplied = 3 "premultiplied",
+    }
+}
+
+enumeration! {
+    /// How fog grows with the distance from the viewer.
+    FogFunction {
+        /// No fog.
+        None = 0 "none",
+        /// In proportion, full at FOG_END.
+        Linear = 1 "linear",
+        /// Exponentially, by FOG_DENSITY.
+        Exponential = 2 "exponential",
+        /// Exponentially with the square.
+        ExponentialSquared = 3 "exponential-squared",
+        /// Depth cueing: a straight line of DEPTH_CUE_SCALE and DEPTH_CUE_OFFSET.
+        DepthCue = 4 "depth-cue",
+    }
+}
+
+enumeration! {
+    /// What a light is like.
+    LightType {
+        /// Parallel rays.
+        Directional = 0 "directional",
+        /// All round from a place.
+        Point = 1 "point",
+        /// A cone from a place.
+        Spot = 2 "spot",
     }
 }
 

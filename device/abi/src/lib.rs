@@ -12,6 +12,7 @@
 //! | [`packet`] | every command packet: opcode, payload words, flags |
 //! | [`fault`] | the codes of the error interrupt |
 //! | [`format`](mod@format) | pixel and depth formats, depth functions, topologies |
+//! | [`light`] | light records in video memory |
 //! | [`effect`] | effect bits a draw can call for, units the firmware can power |
 //! | [`counter`] | every counter and cycle account |
 #![no_std]
@@ -25,6 +26,7 @@ pub mod counter;
 pub mod effect;
 pub mod fault;
 pub mod format;
+pub mod light;
 pub mod packet;
 pub mod register;
 pub mod registers;

@@ -66,6 +66,14 @@ opcodes! {
     Upload = 0x22 "UPLOAD" "address, pitch, words a row, rows, words ...",
     /// Gathers rows of words in video memory into one dense run there.
     Download = 0x23 "DOWNLOAD" "address, pitch, words a row, rows, destination",
+    /// Fills a rectangle through a raster operation, on the bits of the stored pixel that are set in planes; others stay.
+    FillRop = 0x24 "FILL_ROP" "base, pitch, format, x, y, width, height, value, operation, planes",
+    /// Copies a rectangle through a raster operation, on the bits of the stored pixel that are set in planes; overlap is right.
+    CopyRop = 0x25 "COPY_ROP" "format, source base, source pitch, x, y, destination base, destination pitch, x, y, width, height, operation, planes",
+    /// Copies a rectangle into another format: the RGBA value of each pixel; overlap is right.
+    Convert = 0x26 "CONVERT" "source format, source base, source pitch, x, y, destination format, destination base, destination pitch, x, y, width, height",
+    /// Stretches a rectangle over a whole of other size and writes a part of it, whose first pixel goes to x, y; source and part share no byte.
+    Stretch = 0x27 "STRETCH" "filter, source format, source base, source pitch, x, y, width, height, destination format, destination base, destination pitch, x, y, width, height, whole width, whole height, part x, part y",
     /// Stores the sequence number in FENCE_SEQUENCE and raises the fence interrupt when all before it is done.
     Fence = 0x30 "FENCE" "sequence",
     /// Shows the frame buffer at this byte address from the next vertical blank on; waits for it.
@@ -95,8 +103,9 @@ pub const CLEAR_DEPTH: u32 = 1 << 1;
 
 /// The flags word of a draw packet.
 ///
-/// 1:0 topology, 4 indexed, 8 vertices carry a colour; all other bits are zero.
-/// A vertex is x, y, z as f32, then (if bit 8 is set) a colour word: red in 7:0, alpha in 31:24.
+/// 1:0 topology, 4 indexed, 8 vertices carry a colour, 9 a normal, 10 texture coordinates; all other bits are zero.
+/// A vertex is x, y, z as f32, then (if bit 8 is set) a colour word: red in 7:0, alpha in 31:24, then (bit 9) a normal,
+/// 3 f32 in object space, then (bit 10) texture coordinates u, v, 2 f32.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawFlags {
     /// How vertices make primitives.
@@ -105,17 +114,27 @@ pub struct DrawFlags {
     pub indexed: bool,
     /// Each vertex has a colour word; else MATERIAL_COLOUR is used.
     pub coloured: bool,
+    /// Each vertex has a normal; else light falls on it from everywhere alike: its normal is 0.
+    pub normals: bool,
+    /// Each vertex has texture coordinates; else they are 0.
+    pub coordinates: bool,
 }
 
 impl DrawFlags {
     /// The flags in a word, if it is a valid one.
     #[must_use]
     pub const fn from_code(code: u32) -> Option<DrawFlags> {
-        if code & !0x113 != 0 {
+        if code & !0x713 != 0 {
             return None;
         }
         match crate::format::Topology::from_code(code & 3) {
-            Some(topology) => Some(DrawFlags { topology, indexed: code & 0x10 != 0, coloured: code & 0x100 != 0 }),
+            Some(topology) => Some(DrawFlags {
+                topology,
+                indexed: code & 0x10 != 0,
+                coloured: code & 0x100 != 0,
+                normals: code & 0x200 != 0,
+                coordinates: code & 0x400 != 0,
+            }),
             None => None,
         }
     }
@@ -123,13 +142,17 @@ impl DrawFlags {
     /// The word.
     #[must_use]
     pub const fn code(self) -> u32 {
-        self.topology as u32 | ((self.indexed as u32) << 4) | ((self.coloured as u32) << 8)
+        self.topology as u32
+            | ((self.indexed as u32) << 4)
+            | ((self.coloured as u32) << 8)
+            | ((self.normals as u32) << 9)
+            | ((self.coordinates as u32) << 10)
     }
 
     /// Words of a vertex.
     #[must_use]
     pub const fn vertex_words(self) -> u32 {
-        if self.coloured { 4 } else { 3 }
+        3 + self.coloured as u32 + 3 * self.normals as u32 + 2 * self.coordinates as u32
     }
 }
 

@@ -228,7 +228,7 @@ registers! {
         22:16 "height" "pixels: 4, 8, 16, 32 or 64";
         6:0 "width" "pixels: 4, 8, 16, 32 or 64";
     }
-    /// Samples of a pixel. With a grid the scene is anti-aliased: its draws may call for the effects `anti_alias` and `blend`.
+    /// Samples of a pixel. With a grid the scene is anti-aliased: its draws may call for the effect `anti_alias`.
     SubpixelGrid "SUBPIXEL_GRID" @ 0x0260 [1] ReadWrite reset &[0], writable 0x3, w1c 0, {
         1:0 "grid" "columns x rows: 0 off, 1 4x4, 2 8x4, 3 8x8";
     }
@@ -293,6 +293,111 @@ registers! {
     PointSize "POINT_SIZE" @ 0x029C [1] ReadWrite reset &[0x100], writable 0xFFFF, w1c 0, {
         15:0 "size" "u8.8, pixels, 1/256..=65535/256";
     }
+
+    // Effects of a draw: sampled by each draw that calls for them ------------------------------
+    /// First byte of the texture's level 0, a multiple of 64; further levels follow, each at the next multiple of 64.
+    TextureBase "TEXTURE_BASE" @ 0x0300 [1] ReadWrite reset &[0], writable 0xFFFF_FFC0, w1c 0, {}
+    /// Size of the texture's level 0.
+    TextureSize "TEXTURE_SIZE" @ 0x0304 [1] ReadWrite reset &[0x0001_0001], writable 0x7FFF_7FFF, w1c 0, {
+        30:16 "height" "texels, 1..=16384";
+        14:0 "width" "texels, 1..=16384";
+    }
+    /// How the texture is stored, read and combined.
+    TextureControl "TEXTURE_CONTROL" @ 0x0308 [1] ReadWrite reset &[0x0001_0100], writable 0x000F_F337, w1c 0, {
+        19:16 "levels" "MIP-map levels in memory, 1..=15, as far as the size can be halved";
+        15:15 "mirror_y" "1: every other repetition is mirrored";
+        14:14 "mirror_x" "1: every other repetition is mirrored";
+        13:13 "repeat_y" "1: the texture repeats, else its edge goes on";
+        12:12 "repeat_x" "1: the texture repeats, else its edge goes on";
+        9:8 "function" "0 replace, 1 modulate, 2 decal, 3 blend with TEXTURE_COLOUR";
+        5:4 "filter" "0 nearest, 1 bilinear, 2 trilinear";
+        2:0 "format" "0 rgba8888, 1 rgb565, 2 rgba5551, 3 rgba4444, 4 palette8, 5 palette4";
+    }
+    /// First texel of level 0 that is used.
+    TextureOffset "TEXTURE_OFFSET" @ 0x030C [1] ReadWrite reset &[0], writable 0x7FFF_7FFF, w1c 0, {
+        30:16 "y" "texels, inside the texture";
+        14:0 "x" "texels, inside the texture";
+    }
+    /// Texels of level 0 that are used: texture coordinates 0..1.
+    TextureWindow "TEXTURE_WINDOW" @ 0x0310 [1] ReadWrite reset &[0], writable 0x7FFF_7FFF, w1c 0, {
+        30:16 "height" "texels, inside the texture; 0: to its end";
+        14:0 "width" "texels, inside the texture; 0: to its end";
+    }
+    /// Constant colour of the texture function `blend`.
+    TextureColour "TEXTURE_COLOUR" @ 0x0314 [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {
+        31:24 "alpha" "not in use";
+        23:16 "blue" "";
+        15:8 "green" "";
+        7:0 "red" "";
+    }
+    /// Added to the level of detail.
+    TextureBias "TEXTURE_BIAS" @ 0x0318 [1] ReadWrite reset &[0], writable 0xFFFF, w1c 0, {
+        15:0 "bias" "s7.8, levels";
+    }
+    /// First byte of the texture's palette, a multiple of 64: 256 (palette8) or 16 (palette4) colours as in MATERIAL_COLOUR.
+    PaletteBase "PALETTE_BASE" @ 0x031C [1] ReadWrite reset &[0], writable 0xFFFF_FFC0, w1c 0, {}
+    /// Which texels are holes, where the effect `punch_through` is called.
+    PunchThrough "PUNCH_THROUGH" @ 0x0320 [1] ReadWrite reset &[0x80], writable 0xFF, w1c 0, {
+        7:0 "reference" "a texel with an alpha below this is a hole";
+    }
+    /// How translucent fragments are combined with what lies behind them.
+    BlendControl "BLEND_CONTROL" @ 0x0324 [1] ReadWrite reset &[0], writable 0x7, w1c 0, {
+        2:0 "mode" "0 alpha, 1 add, 2 multiply, 3 premultiplied";
+    }
+    /// How fog grows with the distance from the viewer.
+    FogControl "FOG_CONTROL" @ 0x0330 [1] ReadWrite reset &[0], writable 0x7, w1c 0, {
+        2:0 "function" "0 none, 1 linear, 2 exponential, 3 exponential-squared, 4 depth-cue";
+    }
+    /// Density of exponential fog, f32, not negative: for each unit of eye space.
+    FogDensity "FOG_DENSITY" @ 0x0334 [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {}
+    /// Distance at which linear fog is full, f32, positive: eye space.
+    FogEnd "FOG_END" @ 0x0338 [1] ReadWrite reset &[ONE], writable 0xFFFF_FFFF, w1c 0, {}
+    /// Depth cueing, kz, f32: what of the surface's share a unit of eye space takes.
+    DepthCueScale "DEPTH_CUE_SCALE" @ 0x033C [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {}
+    /// Depth cueing, cz, f32: the surface's share at the viewer.
+    DepthCueOffset "DEPTH_CUE_OFFSET" @ 0x0340 [1] ReadWrite reset &[ONE], writable 0xFFFF_FFFF, w1c 0, {}
+    /// Colour of the fog.
+    FogColour "FOG_COLOUR" @ 0x0344 [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {
+        31:24 "alpha" "not in use";
+        23:16 "blue" "";
+        15:8 "green" "";
+        7:0 "red" "";
+    }
+    /// Where light is worked out.
+    LightControl "LIGHT_CONTROL" @ 0x0350 [1] ReadWrite reset &[0], writable 0x7, w1c 0, {
+        2:2 "local_viewer" "highlights are seen from the eye; else from infinity along +z";
+        1:1 "two_sided" "normals that point away from the viewer are turned round";
+        0:0 "per_pixel" "at each pixel shaded; else at each vertex";
+    }
+    /// First byte of the light records in video memory, a multiple of 64. 16 words each: 0 type (0 directional, 1 point, 2 spot), 1..=3 position and 4..=6 direction of the rays (f32, eye space), 7 attenuation cut-off (f32, 0: none), 8 spot exponent (f32, 0..=128), 9 colour and 10 ambient (as in MATERIAL_COLOUR), 11..=15 zero.
+    LightBase "LIGHT_BASE" @ 0x0354 [1] ReadWrite reset &[0], writable 0xFFFF_FFC0, w1c 0, {}
+    /// Lights that shine.
+    LightCount "LIGHT_COUNT" @ 0x0358 [1] ReadWrite reset &[0], writable 0x1FF, w1c 0, {
+        8:0 "count" "0..=256";
+    }
+    /// Light that is everywhere.
+    SceneAmbient "SCENE_AMBIENT" @ 0x035C [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {
+        31:24 "alpha" "not in use";
+        23:16 "blue" "";
+        15:8 "green" "";
+        7:0 "red" "";
+    }
+    /// Colour of the material's highlights.
+    MaterialSpecular "MATERIAL_SPECULAR" @ 0x0360 [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {
+        31:24 "alpha" "not in use";
+        23:16 "blue" "";
+        15:8 "green" "";
+        7:0 "red" "";
+    }
+    /// Colour that the material gives off by itself.
+    MaterialEmission "MATERIAL_EMISSION" @ 0x0364 [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {
+        31:24 "alpha" "not in use";
+        23:16 "blue" "";
+        15:8 "green" "";
+        7:0 "red" "";
+    }
+    /// Sharpness of the material's highlights, f32, 0..=128.
+    MaterialShininess "MATERIAL_SHININESS" @ 0x0368 [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {}
 
     // Geometry: sampled by each draw ---------------------------------------------------------
     /// Object to eye, 4x4 f32, row-major for row vectors.

@@ -6,7 +6,8 @@ use crate::bus::{
     FIFO_BASE, FIFO_BYTES, MEMORY_BASE, MEMORY_BYTES, REGISTERS_BASE, REGISTERS_BYTES, ZA_BASE, ZA_BYTES,
 };
 use crate::format::{
-    DepthFormat, DepthFunction, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid, SubpixelResolve,
+    BlendMode, DepthFormat, DepthFunction, FogFunction, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid,
+    SubpixelResolve, TextureFilter, TextureFormat, TextureFunction,
 };
 use crate::registers::REGISTERS;
 use crate::{Access, Bus, Counter, Effects, Fault, FaultCode, Field, Reg, Units};
@@ -76,6 +77,29 @@ fn registers_well_known_offsets_stay_where_the_manual_has_them() {
         (Reg::Effects, 0x0280),
         (Reg::LineWidth, 0x0298),
         (Reg::PointSize, 0x029C),
+        (Reg::TextureBase, 0x0300),
+        (Reg::TextureSize, 0x0304),
+        (Reg::TextureControl, 0x0308),
+        (Reg::TextureOffset, 0x030C),
+        (Reg::TextureWindow, 0x0310),
+        (Reg::TextureColour, 0x0314),
+        (Reg::TextureBias, 0x0318),
+        (Reg::PaletteBase, 0x031C),
+        (Reg::PunchThrough, 0x0320),
+        (Reg::BlendControl, 0x0324),
+        (Reg::FogControl, 0x0330),
+        (Reg::FogDensity, 0x0334),
+        (Reg::FogEnd, 0x0338),
+        (Reg::DepthCueScale, 0x033C),
+        (Reg::DepthCueOffset, 0x0340),
+        (Reg::FogColour, 0x0344),
+        (Reg::LightControl, 0x0350),
+        (Reg::LightBase, 0x0354),
+        (Reg::LightCount, 0x0358),
+        (Reg::SceneAmbient, 0x035C),
+        (Reg::MaterialSpecular, 0x0360),
+        (Reg::MaterialEmission, 0x0364),
+        (Reg::MaterialShininess, 0x0368),
         (Reg::ObjectEye, 0x0400),
         (Reg::Decal, 0x0440),
         (Reg::EyeClip, 0x0480),
@@ -176,6 +200,15 @@ fn reset_values_of_enumerations_have_a_meaning() {
     assert_eq!(SubpixelGrid::from_code(reset(Reg::SubpixelGrid)), Some(SubpixelGrid::Off));
     assert_eq!(SubpixelDepth::from_code(reset(Reg::SubpixelDepth)), Some(SubpixelDepth::Search));
     assert_eq!(SubpixelResolve::from_code(reset(Reg::SubpixelResolve)), Some(SubpixelResolve::Values));
+    let texture = reset(Reg::TextureControl);
+    assert_eq!(TextureFormat::from_code(texture & 7), Some(TextureFormat::Rgba8888));
+    assert_eq!(TextureFilter::from_code(texture >> 4 & 3), Some(TextureFilter::Nearest));
+    assert_eq!(TextureFunction::from_code(texture >> 8 & 3), Some(TextureFunction::Modulate));
+    assert_eq!((texture >> 16, reset(Reg::TextureSize)), (1, 0x0001_0001));
+    assert_eq!(BlendMode::from_code(reset(Reg::BlendControl)), Some(BlendMode::Alpha));
+    assert_eq!(FogFunction::from_code(reset(Reg::FogControl)), Some(FogFunction::None));
+    let numbers = [Reg::FogDensity, Reg::FogEnd, Reg::DepthCueScale, Reg::DepthCueOffset, Reg::MaterialShininess];
+    assert_eq!(numbers.map(|number| f32::from_bits(reset(number))), [0.0, 1.0, 0.0, 1.0, 0.0]);
 }
 
 #[test]
@@ -251,11 +284,12 @@ fn counter_names_are_unique_and_carry_their_unit() {
 }
 
 #[test]
-fn counters_of_the_sub_pixel_unit_stand_behind_the_older_ones() {
+fn counters_of_newer_units_stand_behind_the_older_ones() {
     assert_eq!(Counter::TileFragmentsNotStored as usize, 41);
     assert_eq!(Counter::CyclesSubpixel as usize, 42);
+    assert_eq!(Counter::CyclesTexture as usize, Counter::SubpixelPixelsDegraded as usize + 1);
     let maxima: Vec<_> = Counter::ALL.iter().filter(|counter| counter.is_maximum()).map(|c| c.name()).collect();
-    assert_eq!(maxima, ["subpixel.pool_peak_bytes"]);
+    assert_eq!(maxima, ["subpixel.pool_peak_bytes", "texture.decoded_bytes"]);
 }
 
 // Faults and bus -----------------------------------------------------------------------------

@@ -27,6 +27,10 @@ const fn payload(opcode: Opcode) -> Payload {
         Opcode::Copy => Payload::Exactly(11),
         Opcode::Upload => Payload::AtLeast(4),
         Opcode::Download => Payload::Exactly(5),
+        Opcode::FillRop => Payload::Exactly(10),
+        Opcode::CopyRop => Payload::Exactly(13),
+        Opcode::Convert => Payload::Exactly(12),
+        Opcode::Stretch => Payload::Exactly(19),
         Opcode::Fence | Opcode::Present | Opcode::WriteBack => Payload::Exactly(1),
     }
 }

@@ -5,8 +5,8 @@
 
 use super::claim::Claim;
 use super::memory::VideoMemory;
-use super::power::{SUBPIXEL_EFFECTS, effect_units, path_unit, really_used};
-use super::{Processor, bad_length, outcome, registers};
+use super::power::{effect_units, path_unit, really_used};
+use super::{Processor, bad_length, effects, outcome, registers};
 use crate::checked::{Draw, DrawState, Target, Words};
 use crate::hardware::Hardware;
 use zga_abi::format::DepthFunction;
@@ -35,7 +35,7 @@ impl Processor {
         if !flags.indexed {
             Claim::word(3, index_count).require(index_count == 0)?;
         }
-        // At most (2^32 - 1) * 4 + 2^32 - 1 words: no overflow in u64.
+        // At most (2^32 - 1) * 9 + 2^32 - 1 words: no overflow in u64.
         let vertex_words = u64::from(vertex_count) * u64::from(flags.vertex_words());
         if vertex_words + u64::from(index_count) != body.len() as u64 {
             return Err(bad_length(packet));
@@ -46,6 +46,8 @@ impl Processor {
         let draw = Draw {
             topology: flags.topology,
             coloured: flags.coloured,
+            normals: flags.normals,
+            coordinates: flags.coordinates,
             vertices: Words::Inline(vertices),
             vertex_count,
             indices: flags.indexed.then_some(Words::Inline(indices)),
@@ -80,6 +82,8 @@ impl Processor {
         let draw = Draw {
             topology: flags.topology,
             coloured: flags.coloured,
+            normals: flags.normals,
+            coordinates: flags.coordinates,
             vertices: Words::Memory { address: vertex_address, words: vertices },
             vertex_count,
             indices: flags.indexed.then_some(words),
@@ -109,8 +113,9 @@ impl Processor {
             return Ok(());
         }
 
-        let used = really_used(state.effects, draw.topology, draw.coloured);
-        let units = Units::GEOMETRY | path_unit(target.hidden_surface) | effect_units(used) | probe;
+        let used = really_used(&state, draw);
+        let masks = target.subpixel.is_some();
+        let units = Units::GEOMETRY | path_unit(target.hidden_surface) | effect_units(used, masks) | probe;
         self.power.call(hardware, used);
         self.power.need(hardware, units);
         outcome(hardware.draw(&state, draw))
@@ -126,13 +131,13 @@ fn draw_flags(flags: u32) -> Result<DrawFlags, Fault> {
 fn draw_state<H: Hardware>(hardware: &H, target: &Target) -> Result<DrawState, Fault> {
     let effects_claim = registers::sample(hardware, Reg::Effects);
     let capability = hardware.register(Reg::CapabilityEffects, 0);
-    let effects = registers::effects(effects_claim, capability)?;
-    effects_claim.require(target.has_depth() || !effects.contains(Effects::DEPTH))?;
-    effects_claim.require(target.subpixel.is_some() || !effects.intersects(SUBPIXEL_EFFECTS))?;
+    let called = registers::effect_bits(effects_claim, capability)?;
+    effects_claim.require(target.has_depth() || !called.contains(Effects::DEPTH))?;
+    effects_claim.require(target.subpixel.is_some() || !called.contains(Effects::ANTI_ALIAS))?;
 
     let control = registers::sample(hardware, Reg::DepthControl);
     Ok(DrawState {
-        effects,
+        effects: called,
         depth_function: control.mean(DepthFunction::from_code(control.value & 7))?,
         depth_write: control.value & 0x100 != 0,
         material_colour: hardware.register(Reg::MaterialColour, 0),
@@ -140,6 +145,11 @@ fn draw_state<H: Hardware>(hardware: &H, target: &Target) -> Result<DrawState, F
         scissor: registers::scissor(hardware, target.colour.width, target.colour.height),
         line_width: registers::extent(registers::sample(hardware, Reg::LineWidth))?,
         point_size: registers::extent(registers::sample(hardware, Reg::PointSize))?,
+        texture: effects::texture(hardware, called)?,
+        punch_through: effects::punch_through(hardware, called),
+        light: effects::light(hardware, called)?,
+        fog: effects::fog(hardware, called)?,
+        blend: effects::blend(hardware, called)?,
     })
 }
 

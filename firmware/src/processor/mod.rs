@@ -37,6 +37,7 @@ mod claim;
 mod decode;
 mod display;
 mod draw;
+mod effects;
 mod memory;
 mod power;
 mod registers;
@@ -144,6 +145,10 @@ impl Processor {
             Opcode::Copy => self.copy(hardware, packet),
             Opcode::Upload => self.upload(hardware, packet),
             Opcode::Download => self.download(hardware, packet),
+            Opcode::FillRop => self.fill_rop(hardware, packet),
+            Opcode::CopyRop => self.copy_rop(hardware, packet),
+            Opcode::Convert => self.convert(hardware, packet),
+            Opcode::Stretch => self.stretch(hardware, packet),
             Opcode::Fence => self.fence(hardware, packet),
             Opcode::Present => self.present(hardware, packet),
             Opcode::WriteBack => self.write_back(hardware, packet),

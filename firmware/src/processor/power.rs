@@ -5,15 +5,13 @@
 //! front end (and scan-out while it runs by itself), so a unit that a scene never calls for is
 //! never powered in it.
 
+use crate::checked::{Draw, DrawState};
 use crate::hardware::Hardware;
 use zga_abi::format::{HiddenSurface, Topology};
 use zga_abi::{Effects, Reg, Units};
 
 /// Bit 0 of SCANOUT_CONTROL: vertical blanks without present packets.
 const SCANOUT_CONTINUOUS: u32 = 1;
-
-/// Effects of the sub-pixel mask unit: masks, and translucent layers.
-pub(super) const SUBPIXEL_EFFECTS: Effects = Effects::ANTI_ALIAS.union(Effects::BLEND);
 
 /// Effects and units since begin scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,16 +75,29 @@ impl Power {
     }
 }
 
-/// The effects of `called` that make a difference to such a draw.
+/// The effects called for that make a difference to such a draw.
 ///
-/// Colours are interpolated only between vertices that carry one, and never over a point; without
-/// colours or texture coordinates to interpolate there is nothing to correct for perspective.
-pub(super) fn really_used(called: Effects, topology: Topology, coloured: bool) -> Effects {
-    let mut used = called;
-    if !coloured || topology == Topology::Points {
+/// Colours are interpolated only between vertices that carry one or that light falls on; without anything to
+/// interpolate there is nothing to correct for perspective. Over a point nothing varies. Levels and holes are a
+/// texture's. Fog whose function is none is no fog.
+pub(super) fn really_used(state: &DrawState, draw: &Draw<'_>) -> Effects {
+    let mut used = state.effects;
+    if state.texture.is_none() {
+        used.remove(Effects::MIP_MAP | Effects::PUNCH_THROUGH);
+    }
+    if state.texture.is_some_and(|texture| texture.levels == 1) {
+        used.remove(Effects::MIP_MAP);
+    }
+    if state.fog.is_none() {
+        used.remove(Effects::FOG);
+    }
+    let lit = state.light.is_some_and(|light| !light.per_pixel);
+    if !(draw.coloured || lit) || draw.topology == Topology::Points {
         used.remove(Effects::GOURAUD);
     }
-    if !used.intersects(Effects::GOURAUD | Effects::TEXTURE | Effects::MIP_MAP) {
+    let varies = used.intersects(Effects::GOURAUD | Effects::TEXTURE | Effects::FOG)
+        || state.light.is_some_and(|light| light.per_pixel);
+    if !varies || draw.topology == Topology::Points {
         used.remove(Effects::PERSPECTIVE);
     }
     used
@@ -103,12 +114,14 @@ pub(super) const fn path_unit(path: HiddenSurface) -> Units {
 }
 
 /// The units that effects need beside geometry and the hidden-surface path.
-pub(super) fn effect_units(used: Effects) -> Units {
+///
+/// `masks`: the scene has a sub-pixel grid, so translucent layers are the mask unit's.
+pub(super) fn effect_units(used: Effects, masks: bool) -> Units {
     let shading = Effects::GOURAUD | Effects::LIGHT | Effects::FOG | Effects::BLEND;
     let texture = Effects::TEXTURE | Effects::MIP_MAP | Effects::PUNCH_THROUGH;
     let mut units = Units::empty();
     units.set(Units::SHADING, used.intersects(shading));
     units.set(Units::TEXTURE, used.intersects(texture));
-    units.set(Units::SUBPIXEL, used.intersects(SUBPIXEL_EFFECTS));
+    units.set(Units::SUBPIXEL, masks && used.intersects(Effects::ANTI_ALIAS | Effects::BLEND));
     units
 }

@@ -2,7 +2,7 @@
 
 use super::claim::Claim;
 use super::memory::LARGEST_SIDE;
-use super::{bad_length, memory::VideoMemory};
+use super::{bad_length, effects, memory::VideoMemory};
 use crate::checked::{Rectangle, SubpixelSetting, SystolicSetting, ZaSetting};
 use crate::hardware::Hardware;
 use zga_abi::format::{
@@ -135,7 +135,7 @@ pub(super) fn subpixel_bits(claim: Claim) -> Result<u32, Fault> {
 }
 
 /// Effects that the card has units for (`capability` as in CAPABILITY_EFFECTS).
-pub(super) fn effects(claim: Claim, capability: u32) -> Result<Effects, Fault> {
+pub(super) fn effect_bits(claim: Claim, capability: u32) -> Result<Effects, Fault> {
     let effects = claim.mean(Effects::from_bits(claim.value))?;
     if claim.value & !capability != 0 {
         return Err(claim.refuse(FaultCode::Unsupported));
@@ -229,8 +229,18 @@ impl Write {
             Reg::SubpixelDepth => subpixel_depth(claim).map(|_| ()),
             Reg::SubpixelPool => subpixel_pool(claim).map(|_| ()),
             Reg::LineWidth | Reg::PointSize => extent(claim).map(|_| ()),
+            Reg::TextureSize => size(claim).map(|_| ()),
+            Reg::TextureControl => effects::texture_control(claim).map(|_| ()),
+            Reg::TextureOffset | Reg::TextureWindow => effects::texels(claim).map(|_| ()),
+            Reg::BlendControl => effects::blend_mode(claim).map(|_| ()),
+            Reg::FogControl => effects::fog_function(claim).map(|_| ()),
+            Reg::FogDensity => effects::fog_density(claim).map(|_| ()),
+            Reg::FogEnd => effects::fog_end(claim).map(|_| ()),
+            Reg::DepthCueScale | Reg::DepthCueOffset => effects::depth_cue(claim).map(|_| ()),
+            Reg::LightCount => effects::light_count(claim).map(|_| ()),
+            Reg::MaterialShininess => effects::shininess(claim).map(|_| ()),
             Reg::HiddenSurface => hidden_surface(claim, hardware.register(Reg::CapabilityPaths, 0)).map(|_| ()),
-            Reg::Effects => effects(claim, hardware.register(Reg::CapabilityEffects, 0)).map(|_| ()),
+            Reg::Effects => effect_bits(claim, hardware.register(Reg::CapabilityEffects, 0)).map(|_| ()),
             _ => Ok(()),
         }
     }

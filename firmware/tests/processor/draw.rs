@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, TRIANGLE, packet};
 use crate::mock::{Call, Drawn, MEMORY, Run};
-use zga_abi::format::{DepthFunction, Topology};
+use zga_abi::format::{BlendMode, DepthFunction, Topology};
 use zga_abi::{Effects, Fault, FaultCode};
 use zga_firmware::Stopped;
 use zga_firmware::checked::{DrawState, Rectangle};
@@ -11,6 +11,10 @@ use zga_firmware::checked::{DrawState, Rectangle};
 const INDEXED: u32 = 0x10;
 /// Flags: vertices carry a colour.
 const COLOURED: u32 = 0x100;
+/// Flags: vertices carry a normal.
+const NORMALS: u32 = 0x200;
+/// Flags: vertices carry texture coordinates.
+const COORDINATES: u32 = 0x400;
 
 /// An inline draw of one triangle with these indices.
 fn inline_indexed(indices: &[u32]) -> Vec<u32> {
@@ -44,10 +48,17 @@ fn draw_inline_triangle_reaches_the_card_with_its_state() {
         scissor: Rectangle { x: 1, y: 2, right: 64, bottom: 32 },
         line_width: 0x0180,
         point_size: 0xFFFF,
+        texture: None,
+        punch_through: None,
+        light: None,
+        fog: None,
+        blend: BlendMode::Alpha,
     };
     let draw = Drawn {
         topology: Topology::Triangles,
         coloured: false,
+        normals: false,
+        coordinates: false,
         vertices: Run::Inline(TRIANGLE.to_vec()),
         vertex_count: 3,
         indices: None,
@@ -71,6 +82,32 @@ fn draw_inline_coloured_vertices_have_four_words() {
 }
 
 #[test]
+fn draw_vertices_of_each_format_have_their_words() {
+    let formats = [
+        (0, 3),
+        (COLOURED, 4),
+        (NORMALS, 6),
+        (COLOURED | NORMALS, 7),
+        (COORDINATES, 5),
+        (COLOURED | COORDINATES, 6),
+        (NORMALS | COORDINATES, 8),
+        (COLOURED | NORMALS | COORDINATES, 9),
+    ];
+    for (flags, words) in formats {
+        let mut bench = Bench::in_scene();
+        let inline = drawn(bench.last(0x10, &[&[flags, 3, 0], &vec![7; 3 * words as usize][..]].concat()));
+        let carries = [COLOURED, NORMALS, COORDINATES].map(|flag| flags & flag != 0);
+        assert_eq!([inline.coloured, inline.normals, inline.coordinates], carries, "{flags:#x}");
+        assert_eq!(inline.vertices, Run::Inline(vec![7; 3 * words as usize]));
+        let end = MEMORY - 12 * words;
+        let buffer = drawn(bench.last(0x11, &[flags, end, 3, 0, 0]));
+        assert_eq!([buffer.coloured, buffer.normals, buffer.coordinates], carries, "{flags:#x}");
+        assert_eq!(buffer.vertices, Run::Memory(end, 3 * words));
+        bench.bad(0x11, &[flags, end + 4, 3, 0, 0], FaultCode::OutOfMemory, 2, end + 4);
+    }
+}
+
+#[test]
 fn draw_inline_of_another_length_than_its_counts_say_is_a_bad_length() {
     let cases = [
         (0, 3, 0, 8),
@@ -83,6 +120,11 @@ fn draw_inline_of_another_length_than_its_counts_say_is_a_bad_length() {
         (COLOURED, 0x4000_0000, 0, 0),
         (INDEXED, 1, 0xFFFF_FFFD, 0),
         (INDEXED | COLOURED, 0xFFFF_FFFF, 0xFFFF_FFFF, 3),
+        (NORMALS, 3, 0, 9),
+        (COORDINATES, 3, 0, 18),
+        (INDEXED | COLOURED | NORMALS | COORDINATES, 0xFFFF_FFFF, 0xFFFF_FFFF, 9),
+        // 9 words each: 2^32 + 5.
+        (COLOURED | NORMALS | COORDINATES, 0x1C71_C71D, 0, 5),
     ];
     for (flags, vertices, indices, words) in cases {
         let payload = [&[flags, vertices, indices], &vec![0; words][..]].concat();
@@ -93,7 +135,7 @@ fn draw_inline_of_another_length_than_its_counts_say_is_a_bad_length() {
 
 #[test]
 fn draw_with_a_reserved_flag_is_a_bad_value() {
-    for flags in [0x4, 0x20, 0x200, 0x8000_0000] {
+    for flags in [0x4, 0x20, 0x800, 0x8000_0000] {
         let mut bench = Bench::in_scene();
         bench.bad(0x10, &[flags, 0, 0], FaultCode::BadValue, 1, flags);
         bench.bad(0x11, &[flags, 0, 0, 0, 0], FaultCode::BadValue, 1, flags);
@@ -193,9 +235,9 @@ fn draw_with_depth_but_no_z_buffer_is_a_bad_value() {
 }
 
 #[test]
-fn draw_with_masks_or_layers_but_no_grid_is_a_bad_value() {
+fn draw_with_masks_but_no_grid_is_a_bad_value() {
     let payload = [&[0, 3, 0], &TRIANGLE[..]].concat();
-    for effects in [1 << 8, 1 << 10, 0x501] {
+    for effects in [1 << 10, 0x501] {
         let mut bench = Bench::in_scene();
         bench.card.set(0x0280, effects);
         // A grid counts from the next begin scene on.

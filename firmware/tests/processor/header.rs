@@ -6,7 +6,7 @@ use zga_abi::{Fault, FaultCode};
 use zga_firmware::Processor;
 
 /// Opcode, payload words, whether more are possible.
-const LENGTHS: [(u32, u32, bool); 14] = [
+const LENGTHS: [(u32, u32, bool); 18] = [
     (0x00, 0, true),
     (0x01, 2, true),
     (0x02, 0, false),
@@ -18,6 +18,10 @@ const LENGTHS: [(u32, u32, bool); 14] = [
     (0x21, 11, false),
     (0x22, 4, true),
     (0x23, 5, false),
+    (0x24, 10, false),
+    (0x25, 13, false),
+    (0x26, 12, false),
+    (0x27, 19, false),
     (0x30, 1, false),
     (0x31, 1, false),
     (0x32, 1, false),

@@ -1,9 +1,12 @@
 //! What every argument of a hardware call promises, said again without the firmware's code.
 
 use crate::mock::Mock;
-use zga_abi::format::{DepthFormat, HiddenSurface, PixelFormat, SubpixelGrid};
+use zga_abi::format::{DepthFormat, FogFunction, HiddenSurface, PixelFormat, SubpixelGrid};
 use zga_abi::{Access, Effects, Reg, Units};
-use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Rows, Surface, Target, Words};
+use zga_firmware::checked::{
+    Clear, Combine, CombineSource, Draw, DrawState, Fog, Image, Lighting, Rectangle, Rows, Stretch, Surface, Target,
+    Texture, Words,
+};
 
 fn memory(mock: &Mock) -> u64 {
     u64::from(mock.get(0x0010))
@@ -29,6 +32,18 @@ pub fn register_write(register: Reg, word: u32, old: u32, value: u32) {
         Reg::SubpixelDepth => assert!(value <= 2),
         Reg::SubpixelPool => assert!((1..=1 << 20).contains(&value)),
         Reg::LineWidth | Reg::PointSize => assert!((1..=0xFFFF).contains(&value)),
+        Reg::TextureSize => assert!([value & 0x7FFF, value >> 16].iter().all(|side| (1..=16384).contains(side))),
+        Reg::TextureControl => {
+            assert!((value & 7) < 6 && (value >> 4 & 3) < 3 && (1..=15).contains(&(value >> 16)));
+        }
+        Reg::TextureOffset | Reg::TextureWindow => assert!(value & 0x7FFF <= 16384 && value >> 16 <= 16384),
+        Reg::BlendControl => assert!(value < 4),
+        Reg::FogControl => assert!(value < 5),
+        Reg::FogDensity => assert!(f32::from_bits(value).is_finite() && f32::from_bits(value) >= 0.0),
+        Reg::FogEnd => assert!(f32::from_bits(value).is_finite() && f32::from_bits(value) > 0.0),
+        Reg::DepthCueScale | Reg::DepthCueOffset => assert!(f32::from_bits(value).is_finite()),
+        Reg::LightCount => assert!(value <= 256),
+        Reg::MaterialShininess => assert!((0.0..=128.0).contains(&f32::from_bits(value))),
         _ => {}
     }
 }
@@ -68,6 +83,56 @@ pub fn surface(mock: &Mock, surface: &Surface) {
     let rows = u64::from(surface.height - 1) * u64::from(surface.pitch);
     let end = u64::from(surface.base) + rows + u64::from(surface.width * pixel);
     assert!(end <= memory(mock), "{surface:?}");
+}
+
+/// Pixels for the bitmap unit, in any of its formats.
+pub fn image(mock: &Mock, image: &Image) {
+    let pixel = [4, 4, 2, 1][image.format.code() as usize];
+    assert!((1..=16384).contains(&image.width) && (1..=16384).contains(&image.height));
+    assert_eq!((image.base % pixel, image.pitch % pixel), (0, 0));
+    assert!(image.pitch >= image.width * pixel);
+    let rows = u64::from(image.height - 1) * u64::from(image.pitch);
+    let end = u64::from(image.base) + rows + u64::from(image.width * pixel);
+    assert!(end <= memory(mock), "{image:?}");
+}
+
+/// A raster operation changes something, and has a source image only where it looks at it.
+pub fn combine(mock: &Mock, combine: &Combine) {
+    image(mock, &combine.destination);
+    let operation = combine.operation.code();
+    assert_ne!(operation, 5, "no-operation");
+    let planes = [0xFFFF_FFFF, 0xFFFF_FFFF, 0xFFFF, 0xFF][combine.destination.format.code() as usize];
+    assert_ne!(combine.planes, 0);
+    assert_eq!(combine.planes & !planes, 0);
+    if let CombineSource::Image(source) = &combine.source {
+        image(mock, source);
+        assert!(![0, 10, 15].contains(&operation), "clear, invert, set");
+        let size = |image: &Image| (image.width, image.height, image.format);
+        assert_eq!(size(source), size(&combine.destination));
+    }
+}
+
+/// A stretch writes a part of the whole and nothing of its source.
+pub fn stretch(mock: &Mock, stretch: &Stretch) {
+    let (source, destination) = (&stretch.source, &stretch.destination);
+    image(mock, source);
+    image(mock, destination);
+    for (start, (length, whole)) in
+        stretch.part.into_iter().zip([destination.width, destination.height].into_iter().zip(stretch.whole))
+    {
+        assert!(u64::from(start) + u64::from(length) <= u64::from(whole) && whole <= 16384, "{stretch:?}");
+    }
+    // Rows are few: the mock's memory is 1 MiB and a row is at least a byte.
+    let rows = |image: &Image| {
+        let (base, pitch, bytes) = (image.base, image.pitch, image.width * image.format.bytes());
+        (0..image.height).map(move |row| (base + row * pitch, base + row * pitch + bytes)).collect::<Vec<_>>()
+    };
+    for (start, end) in rows(source) {
+        // Of rows that rise, only the first that ends behind the start can be the first to meet.
+        let others = rows(destination);
+        let next = others.partition_point(|&(_, other_end)| other_end <= start);
+        assert!(others.get(next).is_none_or(|&(other, _)| end <= other), "{stretch:?}");
+    }
 }
 
 /// Rows of words.
@@ -140,10 +205,14 @@ pub fn draw(mock: &Mock, target: &Target, state: &DrawState, draw: &Draw<'_>) {
     inside(target, &state.scissor);
     assert_eq!(state.effects.bits() & !mock.get(0x0008), 0);
     assert!(may_have_depth(target) || !state.effects.contains(Effects::DEPTH));
-    assert!(target.subpixel.is_some() || !state.effects.intersects(Effects::ANTI_ALIAS | Effects::BLEND));
+    assert!(target.subpixel.is_some() || !state.effects.contains(Effects::ANTI_ALIAS));
     assert!((1..=0xFFFF).contains(&state.line_width) && (1..=0xFFFF).contains(&state.point_size));
+    effects(mock, state);
     words(mock, &draw.vertices);
-    let vertex_words = if draw.coloured { 4 } else { 3 };
+    let vertex_words = 3 + [(draw.coloured, 1), (draw.normals, 3), (draw.coordinates, 2)]
+        .iter()
+        .filter_map(|&(carries, words)| carries.then_some(words))
+        .sum::<u64>();
     let given = match draw.vertices {
         Words::Inline(words) => words.len() as u64,
         Words::Memory { words, .. } => u64::from(words),
@@ -152,6 +221,54 @@ pub fn draw(mock: &Mock, target: &Target, state: &DrawState, draw: &Draw<'_>) {
     if let Some(indices) = draw.indices {
         words(mock, &indices);
         assert!(each(mock, &indices).all(|index| index < draw.vertex_count));
+    }
+}
+
+/// What the effects of a draw are given: all that they need where they are called for, else nothing.
+fn effects(mock: &Mock, state: &DrawState) {
+    let called = |effects| state.effects.contains(effects);
+    assert_eq!(state.texture.is_some(), called(Effects::TEXTURE));
+    assert_eq!(state.punch_through.is_some(), called(Effects::TEXTURE | Effects::PUNCH_THROUGH));
+    assert_eq!(state.light.is_some(), called(Effects::LIGHT));
+    assert_eq!(state.fog.is_some(), called(Effects::FOG) && mock.get(0x0330) != 0);
+    assert!(called(Effects::BLEND) || state.blend as u32 == 0);
+    if let Some(map) = state.texture {
+        texture(mock, &map);
+        assert_eq!(map.mip_map, called(Effects::MIP_MAP));
+    }
+    if let Some(Lighting { lights, count, shininess, .. }) = state.light {
+        assert_eq!(lights % 64, 0);
+        assert!(count <= 256 && (0.0..=128.0).contains(&shininess));
+        run(mock, lights, u64::from(count) * 16);
+    }
+    if let Some(Fog { function, density, end, cue_scale, cue_offset, .. }) = state.fog {
+        assert_ne!(function, FogFunction::None);
+        assert!([density, end, cue_scale, cue_offset].iter().all(|number| number.is_finite()));
+        assert!(density >= 0.0 && end > 0.0);
+    }
+}
+
+/// A texture: window inside, levels as far as it can be halved, all of it in memory.
+fn texture(mock: &Mock, texture: &Texture) {
+    let Texture { base, size: [width, height], format, levels, palette, offset, window, .. } = *texture;
+    assert_eq!(base % 64, 0);
+    assert!((1..=16384).contains(&width) && (1..=16384).contains(&height));
+    assert!(levels >= 1 && width.max(height) >> (levels - 1) >= 1, "{texture:?}");
+    for (axis, side) in [width, height].into_iter().enumerate() {
+        assert!(window[axis] >= 1 && offset[axis] + window[axis] <= side, "{texture:?}");
+    }
+    let mut end = u64::from(base);
+    for level in 0..levels {
+        let begin = end.next_multiple_of(64);
+        assert_eq!(texture.level_offset(level), begin - u64::from(base), "{texture:?}");
+        let bits = u64::from((width >> level).max(1)) * u64::from(format.bits());
+        end = begin + bits.div_ceil(32) * 4 * u64::from((height >> level).max(1));
+    }
+    assert_eq!(texture.bytes(), end - u64::from(base), "{texture:?}");
+    assert!(end <= memory(mock), "{texture:?}");
+    if format.palette() != 0 {
+        assert_eq!(palette % 64, 0);
+        run(mock, palette, u64::from(format.palette()));
     }
 }
 

@@ -6,6 +6,7 @@ mod bench;
 mod bitmap;
 mod display;
 mod draw;
+mod effects;
 mod header;
 mod invariants;
 mod mock;

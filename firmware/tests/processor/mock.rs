@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use zga_abi::format::Topology;
 use zga_abi::registers::REGISTERS;
 use zga_abi::{Reg, Units};
-use zga_firmware::checked::{Clear, Copy, Draw, DrawState, Fill, Rows, Target, Words};
+use zga_firmware::checked::{Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Stretch, Target, Words};
 use zga_firmware::{Hardware, Stopped};
 
 /// Bytes of video memory.
@@ -34,6 +34,8 @@ impl From<Words<'_>> for Run {
 pub struct Drawn {
     pub topology: Topology,
     pub coloured: bool,
+    pub normals: bool,
+    pub coordinates: bool,
     pub vertices: Run,
     pub vertex_count: u32,
     pub indices: Option<Run>,
@@ -52,6 +54,9 @@ pub enum Call {
     Draw(DrawState, Drawn),
     Fill(Fill),
     Copy(Copy),
+    Combine(Combine),
+    Convert(Convert),
+    Stretch(Stretch),
     Upload(Rows, Vec<u32>),
     Download(Rows, u32),
     Fence(u32),
@@ -168,6 +173,8 @@ impl Hardware for Mock {
         let drawn = Drawn {
             topology: draw.topology,
             coloured: draw.coloured,
+            normals: draw.normals,
+            coordinates: draw.coordinates,
             vertices: draw.vertices.into(),
             vertex_count: draw.vertex_count,
             indices: draw.indices.map(Run::from),
@@ -194,6 +201,24 @@ impl Hardware for Mock {
         assert_eq!(source.format, destination.format);
         assert_eq!((source.width, source.height), (destination.width, destination.height));
         self.work(Units::BITMAP, Call::Copy(*copy));
+    }
+
+    fn combine(&mut self, combine: &Combine) {
+        invariants::combine(self, combine);
+        self.work(Units::BITMAP, Call::Combine(*combine));
+    }
+
+    fn convert(&mut self, convert: &Convert) {
+        let (source, destination) = (&convert.source, &convert.destination);
+        invariants::image(self, source);
+        invariants::image(self, destination);
+        assert_eq!((source.width, source.height), (destination.width, destination.height));
+        self.work(Units::BITMAP, Call::Convert(*convert));
+    }
+
+    fn stretch(&mut self, stretch: &Stretch) {
+        invariants::stretch(self, stretch);
+        self.work(Units::BITMAP, Call::Stretch(*stretch));
     }
 
     fn upload(&mut self, rows: &Rows, words: &[u32]) {

@@ -12,6 +12,20 @@ fn plain() -> Units {
     Units::FRONTEND | Units::GEOMETRY | Units::Z_BUFFER
 }
 
+/// A texture of 4 x 4 texels with all of its levels, and linear fog.
+fn with_effects(mut bench: Bench) -> Bench {
+    bench.card.set(0x0304, 0x0004_0004);
+    bench.card.set(0x0308, 0x0003_0100);
+    bench.card.set(0x0330, 1);
+    bench
+}
+
+/// The effects that a draw of a triangle with `effects` in EFFECTS really uses.
+fn used(mut bench: Bench, effects: Effects, coloured: bool) -> Effects {
+    draw(&mut bench, effects.bits(), coloured);
+    bench.processor.effects_called()
+}
+
 /// Draws a triangle with these effects; with colours if asked for.
 fn draw(bench: &mut Bench, effects: u32, coloured: bool) -> Vec<Call> {
     bench.card.set(0x0280, effects);
@@ -65,18 +79,19 @@ fn draw_each_effect_powers_its_unit_and_no_other() {
         (Effects::GOURAUD, Units::SHADING),
         (Effects::DECAL, Units::empty()),
         (Effects::TEXTURE, Units::TEXTURE),
-        (Effects::MIP_MAP, Units::TEXTURE),
+        (Effects::TEXTURE.union(Effects::MIP_MAP), Units::TEXTURE),
         (Effects::LIGHT, Units::SHADING),
         (Effects::FOG, Units::SHADING),
         (Effects::BLEND, Units::SHADING | Units::SUBPIXEL),
-        (Effects::PUNCH_THROUGH, Units::TEXTURE),
+        (Effects::TEXTURE.union(Effects::PUNCH_THROUGH), Units::TEXTURE),
         (Effects::ANTI_ALIAS, Units::SUBPIXEL),
         (Effects::STENCIL, Units::empty()),
         (Effects::GOURAUD.union(Effects::PERSPECTIVE), Units::SHADING),
         (Effects::TEXTURE.union(Effects::PERSPECTIVE), Units::TEXTURE),
+        (Effects::FOG.union(Effects::PERSPECTIVE), Units::SHADING),
     ];
     for (effects, units) in cases {
-        let mut bench = Bench::in_scene_with_grid();
+        let mut bench = with_effects(Bench::in_scene_with_grid());
         let calls = draw(&mut bench, effects.bits(), true);
         let powered = plain() | units;
         assert_eq!(calls[0], Call::SetRegister(0x0700, effects.bits()));
@@ -86,6 +101,67 @@ fn draw_each_effect_powers_its_unit_and_no_other() {
         assert_eq!(bench.processor.effects_called(), effects);
         assert_eq!(bench.processor.units_powered(), powered);
     }
+}
+
+#[test]
+fn draw_blend_without_a_grid_leaves_the_sub_pixel_unit_alone() {
+    let mut bench = Bench::in_scene();
+    draw(&mut bench, Effects::BLEND.bits(), false);
+    assert_eq!(bench.processor.effects_called(), Effects::BLEND);
+    assert_eq!(bench.card.units, plain() | Units::SHADING);
+}
+
+#[test]
+fn draw_levels_and_holes_without_a_texture_are_not_called() {
+    let bench = || with_effects(Bench::in_scene());
+    let both = Effects::MIP_MAP | Effects::PUNCH_THROUGH;
+    assert_eq!(used(bench(), both, false), Effects::empty());
+    assert_eq!(used(bench(), both | Effects::TEXTURE, false), both | Effects::TEXTURE);
+    let mut bench = bench();
+    draw(&mut bench, both.bits(), false);
+    assert_eq!(bench.card.units, plain());
+}
+
+#[test]
+fn draw_mip_map_of_one_level_is_not_called() {
+    let mut bench = with_effects(Bench::in_scene());
+    bench.card.set(0x0308, 0x0001_0100);
+    assert_eq!(used(bench, Effects::TEXTURE | Effects::MIP_MAP, false), Effects::TEXTURE);
+}
+
+#[test]
+fn draw_fog_whose_function_is_none_is_not_called() {
+    let mut bench = Bench::in_scene();
+    draw(&mut bench, (Effects::FOG | Effects::PERSPECTIVE).bits(), false);
+    assert_eq!(bench.processor.effects_called(), Effects::empty());
+    assert_eq!(bench.card.units, plain());
+}
+
+#[test]
+fn draw_gouraud_between_vertices_that_light_falls_on_is_called_without_vertex_colours() {
+    let lit = Effects::LIGHT | Effects::GOURAUD | Effects::PERSPECTIVE;
+    assert_eq!(used(Bench::in_scene(), lit, false), lit);
+    // At each pixel: colours are those of the material, but normals and places vary.
+    let mut bench = Bench::in_scene();
+    bench.card.set(0x0350, 1);
+    assert_eq!(used(bench, lit, false), Effects::LIGHT | Effects::PERSPECTIVE);
+    let mut bench = Bench::in_scene();
+    bench.card.set(0x0350, 1);
+    assert_eq!(used(bench, lit, true), lit);
+}
+
+#[test]
+fn draw_perspective_of_a_flat_lit_triangle_has_nothing_to_correct() {
+    assert_eq!(used(Bench::in_scene(), Effects::LIGHT | Effects::PERSPECTIVE, true), Effects::LIGHT);
+}
+
+#[test]
+fn draw_points_have_nothing_to_correct() {
+    let mut bench = with_effects(Bench::in_scene());
+    let called = Effects::TEXTURE | Effects::FOG | Effects::LIGHT;
+    bench.card.set(0x0280, (called | Effects::PERSPECTIVE | Effects::GOURAUD).bits());
+    bench.good(0x10, &[0x702, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(bench.processor.effects_called(), called);
 }
 
 #[test]
@@ -178,11 +254,15 @@ fn probe_is_powered_by_clears_and_draws_while_enabled() {
 
 #[test]
 fn bitmap_packets_power_the_bitmap_unit() {
-    let packets: [(u32, &[u32]); 4] = [
+    let packets: [(u32, &[u32]); 8] = [
         (0x20, &[0, 64, 0, 0, 0, 1, 1, 0]),
         (0x21, &[0, 0, 64, 0, 0, 64, 64, 0, 0, 1, 1]),
         (0x22, &[0, 4, 1, 1, 0]),
         (0x23, &[0, 4, 1, 1, 8]),
+        (0x24, &[0, 64, 0, 0, 0, 1, 1, 0, 6, 1]),
+        (0x25, &[0, 0, 64, 0, 0, 64, 64, 0, 0, 1, 1, 6, 1]),
+        (0x26, &[0, 0, 64, 0, 0, 1, 64, 64, 0, 0, 1, 1]),
+        (0x27, &[0, 0, 0, 64, 0, 0, 1, 1, 0, 64, 64, 0, 0, 1, 1, 1, 1, 0, 0]),
     ];
     for (opcode, payload) in packets {
         let mut bench = Bench::new();

@@ -71,6 +71,10 @@ fn shaped() -> impl Strategy<Value = Vec<u32>> {
         (0x21, 11..12),
         (0x22, 4..12),
         (0x23, 5..6),
+        (0x24, 10..11),
+        (0x25, 13..14),
+        (0x26, 12..13),
+        (0x27, 19..20),
         (0x30, 1..2),
         (0x31, 1..2),
         (0x32, 1..2),
@@ -88,6 +92,10 @@ fn nearly() -> impl Strategy<Value = Vec<u32>> {
         packet(0x21, &[2, 0x1000, 128, 2, 3, 0x8000, 64, 4, 5, 10, 20]),
         packet(0x22, &[0x1004, 12, 3, 2, 1, 2, 3, 4, 5, 6]),
         packet(0x23, &[0x1004, 16, 3, 2, 0x8004]),
+        packet(0x24, &[0x1000, 256, 3, 2, 3, 10, 20, 5, 6, 0xF0]),
+        packet(0x25, &[2, 0x1000, 128, 2, 3, 0x1000, 128, 4, 5, 10, 20, 7, 0xFFFF]),
+        packet(0x26, &[2, 0x1000, 128, 2, 3, 0, 0x8000, 64, 4, 5, 10, 20]),
+        packet(0x27, &[1, 2, 0x1000, 128, 2, 3, 8, 9, 1, 0x1020, 128, 4, 5, 10, 20, 40, 30, 8, 9]),
         packet(0x31, &[0x4000]),
         packet(0x32, &[0x8000]),
     ];
@@ -103,7 +111,7 @@ fn nearly() -> impl Strategy<Value = Vec<u32>> {
 
 /// A draw from memory that is nearly right.
 fn draw_buffer() -> impl Strategy<Value = Vec<u32>> {
-    let flags = prop::sample::select(vec![0_u32, 1, 2, 3, 0x10, 0x11, 0x110, 0x100]);
+    let flags = prop::sample::select(vec![0_u32, 1, 2, 3, 0x10, 0x11, 0x110, 0x100, 0x200, 0x610, 0x700]);
     (flags, 0..MEMORY / 4, 0..9_u32, 0..MEMORY / 4, 0..9_u32).prop_map(
         |(flags, vertices, count, indices, index_count)| {
             let indexed = (flags >> 4) & 1;
@@ -115,9 +123,10 @@ fn draw_buffer() -> impl Strategy<Value = Vec<u32>> {
 
 /// A draw in the packet whose counts fit.
 fn draw_inline() -> impl Strategy<Value = Vec<u32>> {
-    let flags = prop::sample::select(vec![0_u32, 1, 2, 3, 0x10, 0x13, 0x110, 0x100]);
+    let flags = prop::sample::select(vec![0_u32, 1, 2, 3, 0x10, 0x13, 0x110, 0x100, 0x400, 0x310, 0x700]);
     (flags, 0..6_u32, prop::collection::vec(0..7_u32, 0..6)).prop_map(|(flags, count, indices)| {
-        let vertex_words = if flags & 0x100 == 0 { 3 } else { 4 };
+        let carries = |bit: u32, words: u32| (flags >> bit & 1) * words;
+        let vertex_words = 3 + carries(8, 1) + carries(9, 3) + carries(10, 2);
         let indices = if flags & 0x10 == 0 { &[] } else { &indices[..] };
         let vertices = vec![0; (count * vertex_words) as usize];
         packet(0x10, &[&[flags, count, indices.len() as u32], &vertices[..], indices].concat())
@@ -128,7 +137,9 @@ fn draw_inline() -> impl Strategy<Value = Vec<u32>> {
 fn poke() -> impl Strategy<Value = Step> {
     let offsets = vec![
         0x0200, 0x0204, 0x0208, 0x020C, 0x0210, 0x0214, 0x0218, 0x0240, 0x0244, 0x0260, 0x0264, 0x0268, 0x026C, 0x0280,
-        0x0284, 0x0290, 0x0294, 0x0298, 0x029C, 0x0600, 0x0608, 0x060C, 0x0680, 0x0688, 0x068C, 0x0690, 0x0694,
+        0x0284, 0x0290, 0x0294, 0x0298, 0x029C, 0x0300, 0x0304, 0x0308, 0x030C, 0x0310, 0x0318, 0x031C, 0x0320, 0x0324,
+        0x0330, 0x0334, 0x0338, 0x033C, 0x0340, 0x0350, 0x0354, 0x0358, 0x0368, 0x0600, 0x0608, 0x060C, 0x0680, 0x0688,
+        0x068C, 0x0690, 0x0694,
     ];
     // A target and a screen that make sense, word by word.
     let sensible = vec![
@@ -145,6 +156,20 @@ fn poke() -> impl Strategy<Value = Step> {
         (0x026C, 0x1000),
         (0x0280, 3),
         (0x0280, 0x503),
+        (0x0280, 0xBFE),
+        (0x0280, 0xBFE),
+        (0x0304, 0x0007_0009),
+        (0x0308, 0x0004_F125),
+        (0x030C, 0x0001_0002),
+        (0x0310, 0x0003_0000),
+        (0x0324, 2),
+        (0x0330, 3),
+        (0x0334, 0x3F00_0000),
+        (0x0338, 0x4200_0000),
+        (0x033C, 0x3F00_0000),
+        (0x0340, 0x3F80_0000),
+        (0x0358, 3),
+        (0x0368, 0x4100_0000),
         (0x0298, 0x180),
         (0x029C, 0x180),
         (0x0600, 0),
@@ -282,26 +307,47 @@ fn random_streams_reach_every_unit() {
         for step in steps {
             match step {
                 Step::Poke(offset, value) => bench.card.set(offset, value),
-                Step::Send(packet) => seen.extend(bench.run(&packet).1.iter().map(kind)),
+                Step::Send(packet) => seen.extend(bench.run(&packet).1.iter().flat_map(kinds)),
             }
         }
     }
     let all = [
         "begin",
         "clear",
+        "combine",
+        "convert",
         "copy",
         "download",
         "draw",
         "end",
         "fence",
         "fill",
+        "fogged draw",
+        "lit draw",
         "power",
         "present",
         "register",
+        "stretch",
+        "textured draw",
+        "textured draw with holes",
         "upload",
         "write back",
     ];
     assert_eq!(seen.into_iter().collect::<Vec<_>>(), all);
+}
+
+/// The name of a call, and of what a draw has beside depth and colour.
+fn kinds(call: &Call) -> impl Iterator<Item = &'static str> {
+    let effects = match call {
+        Call::Draw(state, _) => [
+            state.texture.map(|_| "textured draw"),
+            state.punch_through.map(|_| "textured draw with holes"),
+            state.light.map(|_| "lit draw"),
+            state.fog.map(|_| "fogged draw"),
+        ],
+        _ => [None; 4],
+    };
+    std::iter::once(kind(call)).chain(effects.into_iter().flatten())
 }
 
 /// The name of a call.
@@ -316,6 +362,9 @@ fn kind(call: &Call) -> &'static str {
         Call::Draw(..) => "draw",
         Call::Fill(_) => "fill",
         Call::Copy(_) => "copy",
+        Call::Combine(_) => "combine",
+        Call::Convert(_) => "convert",
+        Call::Stretch(_) => "stretch",
         Call::Upload(..) => "upload",
         Call::Download(..) => "download",
         Call::Fence(_) => "fence",

@@ -81,7 +81,30 @@ fn register_write_values_without_a_meaning_are_refused() {
         (0x026C, 0x0010_0001),
         (0x0298, 0), // LINE_WIDTH
         (0x0298, 0x0001_0000),
-        (0x029C, 0), // POINT_SIZE
+        (0x029C, 0),           // POINT_SIZE
+        (0x0304, 0x0000_0001), // TEXTURE_SIZE: no rows
+        (0x0304, 0x0001_0000),
+        (0x0304, 0x4001_0001),
+        (0x0304, 0x0001_4001),
+        (0x0308, 0x0000_0100), // TEXTURE_CONTROL: no level
+        (0x0308, 0x0001_0106), // format
+        (0x0308, 0x0001_0107),
+        (0x0308, 0x0001_0130), // filter
+        (0x030C, 0x4001_0000), // TEXTURE_OFFSET
+        (0x0310, 0x0000_4001), // TEXTURE_WINDOW
+        (0x0324, 4),           // BLEND_CONTROL
+        (0x0330, 5),           // FOG_CONTROL
+        (0x0334, 0xBF80_0000), // FOG_DENSITY: -1
+        (0x0334, 0x7F80_0000),
+        (0x0338, 0),           // FOG_END
+        (0x0338, 0x8000_0001), // less than 0 by the least
+        (0x0338, 0x7FC0_0000),
+        (0x033C, 0xFF80_0000), // DEPTH_CUE_SCALE
+        (0x0340, 0x7FC0_0000), // DEPTH_CUE_OFFSET
+        (0x0358, 0x101),       // LIGHT_COUNT
+        (0x0368, 0x4300_0001), // MATERIAL_SHININESS: over 128 by the least
+        (0x0368, 0xBF80_0000),
+        (0x0368, 0x7FC0_0000),
     ];
     for (offset, value) in cases {
         Bench::new().bad(0x01, &[offset, value], FaultCode::BadValue, 2, value);
@@ -104,6 +127,15 @@ fn register_write_every_enumerated_value_is_taken() {
     cases.extend((0..3).map(|value| (0x0264, value)));
     cases.extend((0..2).map(|value| (0x0268, value)));
     cases.extend([(0x026C, 1), (0x026C, 0x0010_0000)]);
+    cases.extend([(0x0304, 0x0001_0001), (0x0304, 0x4000_4000), (0x030C, 0x4000_4000), (0x0310, 0)]);
+    cases.extend((0..6).map(|format| (0x0308, 0x000F_F100 | format)));
+    cases.extend((0..3).map(|filter| (0x0308, 0x0001_0000 | filter << 4)));
+    cases.extend((0..4).map(|function| (0x0308, 0x0001_0000 | function << 8)));
+    cases.extend((0..4).map(|mode| (0x0324, mode)));
+    cases.extend((0..5).map(|function| (0x0330, function)));
+    cases.extend([(0x0334, 0), (0x0334, 0x7F7F_FFFF), (0x0338, 1), (0x0338, 0x7F7F_FFFF)]);
+    cases.extend([(0x033C, 0xFF7F_FFFF), (0x0340, 0x8000_0000), (0x0358, 0x100)]);
+    cases.extend([(0x0368, 0), (0x0368, 0x4300_0000), (0x0320, 0xFF), (0x0318, 0xFFFF)]);
     cases.extend([(0x0298, 1), (0x0298, 0xFFFF), (0x029C, 1), (0x029C, 0xFFFF)]);
     for (offset, value) in cases {
         let call = Bench::new().last(0x01, &[offset, value]);

@@ -2,8 +2,11 @@
 
 use crate::FaultCode;
 use crate::format::{
-    DepthFormat, DepthFunction, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid, SubpixelResolve, Topology,
+    BitmapFormat, BlendMode, DepthFormat, DepthFunction, FogFunction, HiddenSurface, LightType, PixelFormat,
+    RasterOperation, StretchFilter, SubpixelDepth, SubpixelGrid, SubpixelResolve, TextureFilter, TextureFormat,
+    TextureFunction, Topology,
 };
+use crate::light::{LIGHT_BYTES, LightRecord, MOST_LIGHTS};
 use crate::packet::{DrawFlags, MAX_PAYLOAD, Opcode, header, payload_words};
 use std::collections::HashSet;
 use std::vec::Vec;
@@ -52,12 +55,21 @@ macro_rules! round_trips {
 
 round_trips! {
     pixel_format_codes_round_trip: PixelFormat, 8;
+    bitmap_format_codes_round_trip: BitmapFormat, 8;
+    raster_operation_codes_round_trip: RasterOperation, 8;
+    stretch_filter_codes_round_trip: StretchFilter, 8;
     depth_function_codes_round_trip: DepthFunction, 8;
     topology_codes_round_trip: Topology, 8;
     hidden_surface_codes_round_trip: HiddenSurface, 8;
     subpixel_grid_codes_round_trip: SubpixelGrid, 8;
     subpixel_depth_codes_round_trip: SubpixelDepth, 8;
     subpixel_resolve_codes_round_trip: SubpixelResolve, 8;
+    texture_format_codes_round_trip: TextureFormat, 8;
+    texture_filter_codes_round_trip: TextureFilter, 8;
+    texture_function_codes_round_trip: TextureFunction, 8;
+    blend_mode_codes_round_trip: BlendMode, 8;
+    fog_function_codes_round_trip: FogFunction, 8;
+    light_type_codes_round_trip: LightType, 8;
 }
 
 #[test]
@@ -88,17 +100,17 @@ fn header_opcode_and_length_come_back() {
 #[test]
 fn draw_flags_round_trip_and_reserved_bits_are_refused() {
     let valid: Vec<_> = (0..0x1000).filter(|&code| DrawFlags::from_code(code).is_some()).collect();
-    // 4 topologies, indexed or not, coloured or not.
-    assert_eq!(valid.len(), 16);
+    // 4 topologies, indexed or not, colours, normals, coordinates or not.
+    assert_eq!(valid.len(), 64);
     for code in valid {
         assert_eq!(DrawFlags::from_code(code).map(DrawFlags::code), Some(code));
     }
-    for bit in 12..32 {
+    for bit in [2, 3, 5, 6, 7].into_iter().chain(11..32) {
         assert_eq!(DrawFlags::from_code(1 << bit), None);
     }
-    let plain = DrawFlags::from_code(0x000).map(DrawFlags::vertex_words);
-    let coloured = DrawFlags::from_code(0x100).map(DrawFlags::vertex_words);
-    assert_eq!((plain, coloured), (Some(3), Some(4)));
+    let words = |code| DrawFlags::from_code(code).map(DrawFlags::vertex_words);
+    let formats = [0x000, 0x100, 0x200, 0x300, 0x400, 0x500, 0x600, 0x700];
+    assert_eq!(formats.map(words), [3, 4, 6, 7, 5, 6, 8, 9].map(Some));
 }
 
 #[test]
@@ -147,6 +159,72 @@ fn pixel_format_decode_of_black_and_white_is_exact() {
             assert_eq!(format.decode(format.encode(colour)), colour, "{}", format.name());
         }
     }
+}
+
+#[test]
+fn texture_format_bits_and_palettes_are_those_of_the_manual() {
+    let found: Vec<_> = TextureFormat::ALL.iter().map(|f| (f.name(), f.bits(), f.palette())).collect();
+    let expected = [
+        ("rgba8888", 32, 0),
+        ("rgb565", 16, 0),
+        ("rgba5551", 16, 0),
+        ("rgba4444", 16, 0),
+        ("palette8", 8, 256),
+        ("palette4", 4, 16),
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn light_record_words_lie_where_the_manual_has_them() {
+    let record = LightRecord {
+        kind: 2,
+        position: [1.0, 2.0, 3.0],
+        direction: [4.0, 5.0, 6.0],
+        cut_off: 7.0,
+        spot_exponent: 8.0,
+        colour: 9,
+        ambient: 10,
+        reserved: [0; 5],
+    };
+    let words: &[u32] = bytemuck::cast_slice(core::slice::from_ref(&record));
+    let numbers = [1.0_f32, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0].map(f32::to_bits);
+    assert_eq!(words, [&[2], &numbers[..], &[9, 10, 0, 0, 0, 0, 0]].concat());
+    assert_eq!((LIGHT_BYTES, MOST_LIGHTS), (64, 256));
+}
+
+#[test]
+fn bitmap_formats_of_frame_buffers_are_their_pixel_formats() {
+    for &format in PixelFormat::ALL {
+        let bitmap = BitmapFormat::from(format);
+        assert_eq!((bitmap.code(), bitmap.name()), (format.code(), format.name()));
+        assert_eq!((bitmap.pixel_format(), bitmap.bytes()), (Some(format), format.bytes()));
+        let colour = [0x12, 0x34, 0x56, 0x78];
+        assert_eq!(bitmap.encode(colour), format.encode(colour));
+        assert_eq!(bitmap.decode(0x9ABC_DEF0), format.decode(0x9ABC_DEF0));
+    }
+    assert_eq!(
+        BitmapFormat::ALL.iter().map(|format| format.bits()).collect::<Vec<_>>(),
+        [0xFFFF_FFFF, 0xFFFF_FFFF, 0xFFFF, 0xFF]
+    );
+}
+
+#[test]
+fn bitmap_format_of_coverage_alone_is_black_with_alpha() {
+    let format = BitmapFormat::Alpha8;
+    assert_eq!((format.bytes(), format.pixel_format()), (1, None));
+    assert_eq!(format.decode(0xFFFF_FF5A), [0, 0, 0, 0x5A]);
+    assert_eq!(format.encode([1, 2, 3, 0x5A]), 0x5A);
+}
+
+#[test]
+fn raster_operations_tell_what_they_read() {
+    let which = |reads: fn(RasterOperation) -> bool| -> Vec<u32> {
+        RasterOperation::ALL.iter().filter(|&&operation| reads(operation)).map(|operation| operation.code()).collect()
+    };
+    // All but clear, no-operation, invert, set; all but clear, copy, copy-inverted, set.
+    assert_eq!(which(RasterOperation::reads_source), [1, 2, 3, 4, 6, 7, 8, 9, 11, 12, 13, 14]);
+    assert_eq!(which(RasterOperation::reads_destination), [1, 2, 4, 5, 6, 7, 8, 9, 10, 11, 13, 14]);
 }
 
 #[test]
