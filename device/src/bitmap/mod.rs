@@ -1,36 +1,65 @@
-//! Bitmap unit: fills and moves rectangles in video memory.
+//! Bitmap unit: fills, moves, combines, converts and stretches rectangles in video memory.
 //!
-//! Duties: fill, copy with any overlap, upload from packets, download to a dense run.
+//! Duties: fill, copy with any overlap, raster operations with a plane mask, conversion between formats, stretch, upload
+//! from packets, download to a dense run.
 //! Inputs: checked rectangles from the firmware. Outputs: words in video memory.
 //! Clocks (`cycles.bitmap`): video memory moves one line of 64 bytes a clock, so each row costs
-//! 1 clock for each line it writes and, where it reads, 1 for each line it reads. What the words
-//! pass through in between costs nothing: it works while memory does. An upload's words come from
-//! the front end, which has charged them. A copy that overlaps itself costs what any other does.
+//! 1 clock for each line it writes and, where it reads, 1 for each line it reads; what is there counts as read where it
+//! has to be combined with what comes. What the words pass through in between costs nothing: it works while memory
+//! does. Only a stretch costs more, 1 clock a pixel ([`stretch`]). An upload's words come from the front end, which has
+//! charged them. A copy that overlaps itself costs what any other does.
 //!
 //! | file | stage |
 //! | --- | --- |
 //! | [`fill`] | one value to a rectangle |
 //! | [`copy`] | rectangle to rectangle |
+//! | [`combine`] | value or rectangle through a raster operation and a plane mask |
+//! | [`convert`] | rectangle into another format |
+//! | [`stretch`] | rectangle to another size |
 //! | [`transfer`] | packet to rows, rows to a dense run |
+//! | [`specification`] | combine, convert and stretch pixel by pixel |
 
+pub(crate) mod combine;
+pub(crate) mod convert;
 pub(crate) mod copy;
 pub(crate) mod fill;
+mod specification;
+pub(crate) mod stretch;
 pub(crate) mod transfer;
 
+use crate::Kernel;
 use crate::memory::lines;
 use crate::probe::account::{Account, Clocks};
+use stretch::LineBuffers;
 use zga_abi::Counter;
+use zga_firmware::checked::Image;
 
-/// Room that the bitmap unit uses again and again; empty until an overlap needs it.
-#[derive(Debug, Default)]
+/// The unit, with room that it uses again and again; empty until something needs it.
+#[derive(Debug)]
 pub(crate) struct Bitmap {
+    /// Pixel by pixel, in place of the fast ways.
+    specification: bool,
+    /// Rows of a source that overlaps its destination: at most what lies in video memory.
     scratch: Vec<u32>,
+    /// One row.
+    line: Vec<u32>,
+    buffers: LineBuffers,
 }
 
 impl Bitmap {
+    /// A unit that works as the kernel says: by the specification, or fast.
+    pub(crate) fn new(kernel: Kernel) -> Bitmap {
+        Bitmap {
+            specification: kernel == Kernel::Specification,
+            scratch: Vec::new(),
+            line: Vec::new(),
+            buffers: LineBuffers::default(),
+        }
+    }
+
     /// Gives its memory back.
     pub(crate) fn power_off(&mut self) {
-        self.scratch = Vec::new();
+        (self.scratch, self.line, self.buffers) = (Vec::new(), Vec::new(), LineBuffers::default());
     }
 }
 
@@ -44,6 +73,26 @@ struct Span {
 }
 
 impl Span {
+    /// The rows of an image.
+    fn of(image: &Image) -> Span {
+        Span {
+            base: u64::from(image.base),
+            pitch: u64::from(image.pitch),
+            row_bytes: u64::from(image.width) * u64::from(image.format.bytes()),
+            rows: u64::from(image.height),
+        }
+    }
+
+    /// Index of the first pixel of row `row` in memory as pixels.
+    fn at<P>(&self, row: u64) -> usize {
+        ((self.base + row * self.pitch) / size_of::<P>() as u64) as usize
+    }
+
+    /// Pixels of a row.
+    fn pixels<P>(&self) -> usize {
+        (self.row_bytes / size_of::<P>() as u64) as usize
+    }
+
     /// First byte beyond the last row.
     fn end(&self) -> u64 {
         self.base + (self.rows - 1) * self.pitch + self.row_bytes
