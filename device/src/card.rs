@@ -23,7 +23,9 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::SeqCst;
 use zga_abi::bus::INTERRUPT_FENCE;
 use zga_abi::{Counter, Fault, Reg, Units};
-use zga_firmware::checked::{Clear, Copy, Draw, DrawState, Fill, Rows, Target, Words};
+use zga_firmware::checked::{
+    Clear, Combine, CombineSource, Convert, Copy, Draw, DrawState, Fill, Rows, Stretch, Target, Words,
+};
 use zga_firmware::{Hardware, Processor, ProcessorState, Stopped};
 
 /// Units that [`Pipeline`] stands for.
@@ -140,7 +142,7 @@ impl Board {
         frontend.fifo.reset(&backplane.fifo);
         frontend.ring.forget();
         frontend.processor.reset();
-        blocks.pipeline.power_off();
+        blocks.pipeline.power_off(&mut backplane.memory.lock());
         blocks.bitmap.power_off();
         blocks.scanout.reset();
         blocks.probe.reset();
@@ -230,10 +232,19 @@ impl Hardware for Wiring<'_> {
         // Begin scene takes all power away. Memory goes back only now, from what the scene did not
         // call for: a unit that every scene needs keeps its memory from one to the next.
         if !powered.intersects(PIPELINE) {
-            pipeline.power_off();
+            pipeline.power_off(&mut self.memory);
+        }
+        if !powered.contains(Units::TEXTURE) {
+            pipeline.power_texture_off(&mut self.memory);
         }
         if !powered.contains(Units::SUBPIXEL) {
             pipeline.power_subpixels_off();
+        }
+        if !powered.contains(Units::SHADING) {
+            pipeline.power_layers_off();
+        }
+        if !powered.intersects(Units::SUBPIXEL | Units::SHADING) {
+            pipeline.power_scene_off();
         }
         if !powered.contains(Units::BITMAP) {
             bitmap.power_off();
@@ -245,9 +256,10 @@ impl Hardware for Wiring<'_> {
     }
 
     fn clear(&mut self, clear: &Clear) {
+        let stop = watch(self.backplane);
         let Blocks { pipeline, probe, account, .. } = &mut *self.blocks;
         probe.clear(&self.backplane.registers, clear, |x, y| pipeline.depth_at(&self.memory, x, y));
-        pipeline.clear(&mut self.memory, clear, account);
+        pipeline.clear(&mut self.memory, clear, account, &stop);
         self.store_records();
     }
 
@@ -286,6 +298,28 @@ impl Hardware for Wiring<'_> {
         let Blocks { bitmap, account, .. } = &mut *self.blocks;
         let memory = self.memory.using(copy.source.bytes(), copy.destination.bytes(), account);
         bitmap.copy(memory, copy, account);
+    }
+
+    fn combine(&mut self, combine: &Combine) {
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        let read = match &combine.source {
+            CombineSource::Value(_) => NOTHING,
+            CombineSource::Image(source) => source.bytes(),
+        };
+        let memory = self.memory.using(read, combine.destination.bytes(), account);
+        bitmap.combine(memory, combine, account);
+    }
+
+    fn convert(&mut self, convert: &Convert) {
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        let memory = self.memory.using(convert.source.bytes(), convert.destination.bytes(), account);
+        bitmap.convert(memory, convert, account);
+    }
+
+    fn stretch(&mut self, stretch: &Stretch) {
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        let memory = self.memory.using(stretch.source.bytes(), stretch.destination.bytes(), account);
+        bitmap.stretch(memory, stretch, account);
     }
 
     fn upload(&mut self, rows: &Rows, words: &[u32]) {

@@ -80,7 +80,7 @@ impl Card {
             frontend: Frontend { fifo, ring: RingFetch::default(), processor: Processor::new() },
             blocks: Blocks {
                 pipeline: Pipeline::new(&PipelineOptions { threads, kernel }),
-                bitmap: Bitmap::default(),
+                bitmap: Bitmap::new(kernel),
                 scanout: Scanout::default(),
                 probe: Probe::default(),
                 account: Account::default(),

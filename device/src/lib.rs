@@ -24,7 +24,7 @@
 //!          |      +----------------------v--+   +-------v--+   +--+------+
 //!          |      | pipeline                |   | bitmap   |   | scanout |
 //!          |      | geometry > hidden >     |   |          |   |         |
-//!          |      | shading                 |   |          |   |         |
+//!          |      | shading, texture        |   |          |   |         |
 //!          |      +-----------|-------------+   +-----|----+   +----^----+
 //!          | bursts           | pixels, depths        |             | pixels
 //!   +------v------------------v-----------------------v-------------|----+
@@ -80,12 +80,14 @@ mod error;
 mod frontend;
 mod geometry;
 mod hidden;
+mod layers;
 mod memory;
 mod pipeline;
 mod probe;
 mod scanout;
 mod shading;
 mod subpixel;
+pub mod texture;
 
 /// What the units of the hidden-surface paths are built from, for reports.
 pub mod cost {
@@ -97,6 +99,12 @@ pub mod cost {
     pub mod tile {
         pub use crate::hidden::tile::storage::*;
     }
+}
+
+/// Lights and fog of the shading unit by themselves, to measure them.
+pub mod effects {
+    pub use crate::shading::fog::FogMixer;
+    pub use crate::shading::light::{Lights, normal_matrix};
 }
 
 pub use bus::CardBus;

@@ -33,7 +33,12 @@ const EFFECTS: Effects = Effects::DEPTH
     .union(Effects::GOURAUD)
     .union(Effects::PERSPECTIVE)
     .union(Effects::DECAL)
+    .union(Effects::TEXTURE)
+    .union(Effects::MIP_MAP)
+    .union(Effects::LIGHT)
+    .union(Effects::FOG)
     .union(Effects::BLEND)
+    .union(Effects::PUNCH_THROUGH)
     .union(Effects::ANTI_ALIAS);
 /// Hidden-surface paths that this card has, as in CAPABILITY_PATHS.
 const PATHS: u32 = {

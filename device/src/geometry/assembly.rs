@@ -34,7 +34,7 @@ pub trait Sink {
     fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32);
     /// Takes the outline of a triangle that is drawn with masks, also of one that lies between pixel centres; what of
     /// it the hidden-surface path draws comes as a triangle after it.
-    fn masked(&mut self, vertices: &[ScreenVertex; 3]);
+    fn masked(&mut self, vertices: &[ScreenVertex; 3], number: u32);
     /// Wants no more: what it has must be drawn first.
     fn full(&self) -> bool;
 }
@@ -75,7 +75,7 @@ pub struct Assembler<'a> {
     pub format: DepthFormat,
     /// How vertices make primitives.
     pub topology: Topology,
-    /// Vertices of an indexed draw, transformed once each; `None` stands for one to clip.
+    /// Vertices of an indexed draw, or of one that light falls on, transformed once each; `None` stands for one to clip.
     pub shared: Option<&'a [Option<ScreenVertex>]>,
     /// Primitives are drawn with sub-pixel masks.
     pub masks: Option<Widths>,
@@ -127,7 +127,7 @@ impl Assembler<'_> {
     #[inline(always)]
     fn set_up(&self, v: &[ScreenVertex; 3], number: u32, sink: &mut impl Sink) -> bool {
         if self.masks.is_some() {
-            sink.masked(v);
+            sink.masked(v, number);
         }
         match Triangle::new(v, self.format) {
             Some((triangle, columns)) => {
@@ -146,7 +146,7 @@ impl Assembler<'_> {
         sink: &mut impl Sink,
         counts: &mut GeometryCounts,
     ) -> bool {
-        let raw = vertices.map(|v| self.fetch.vertex(v));
+        let raw = vertices.map(|v| self.fetch.lit_vertex(v));
         let [Some(a), Some(b), Some(c)] = raw.map(|r| self.transform.clip_space(&r)) else {
             return false;
         };
@@ -184,7 +184,7 @@ impl Assembler<'_> {
 
     #[cold]
     fn clip_line(&self, vertices: [usize; 2], counts: &mut GeometryCounts) -> Option<[ScreenVertex; 2]> {
-        let raw = vertices.map(|v| self.fetch.vertex(v));
+        let raw = vertices.map(|v| self.fetch.lit_vertex(v));
         let [Some(a), Some(b)] = raw.map(|r| self.transform.clip_space(&r)) else {
             return None;
         };
@@ -335,7 +335,7 @@ impl Sink for List {
     fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32) {
         self.push(Shape::Point(*point, *vertex), &[*vertex], number);
     }
-    fn masked(&mut self, _vertices: &[ScreenVertex; 3]) {}
+    fn masked(&mut self, _vertices: &[ScreenVertex; 3], _number: u32) {}
     fn full(&self) -> bool {
         self.shapes.len() >= LIST_LIMIT || self.pixels >= PIXEL_LIMIT
     }

@@ -1,10 +1,24 @@
 //! Vertex and index words, in the packet or in video memory, as plain slices.
 //!
+//! Where light falls on vertices, each is asked for once, lit ([`Fetch::lit_vertex`]), before primitives are assembled.
+//!
 //! The firmware has checked that the words are there and that each index named a vertex when it
 //! looked. The host may have written over an index since: such an index reads as the last vertex,
 //! so that no fetch leaves the vertex words.
 
+use crate::shading::light::Lights;
+use crate::shading::parameters::{ParameterTransform, Parameters, VertexParameters};
+use zga_abi::format::Topology;
 use zga_firmware::checked::{Draw, Words};
+
+/// Light that falls on vertices.
+#[derive(Clone, Debug)]
+pub struct VertexLight {
+    /// The lights.
+    pub lights: Lights,
+    /// To eye space.
+    pub transform: ParameterTransform,
+}
 
 /// A draw's words, borrowed from packet or video memory.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +28,12 @@ pub struct Fetch<'a> {
     indices: Option<&'a [u32]>,
     last: usize,
     material: u32,
+    /// The word after the position is a colour.
+    coloured: bool,
+    /// Words before a vertex's normal and texture coordinates; none without.
+    normal: Option<usize>,
+    coordinates: Option<usize>,
+    light: Option<&'a VertexLight>,
 }
 
 /// A vertex as it stands in memory.
@@ -28,17 +48,23 @@ pub struct RawVertex {
 impl<'a> Fetch<'a> {
     /// Finds the words of `draw`.
     #[must_use]
-    pub fn new(memory: &'a [u32], draw: &Draw<'a>, material: u32) -> Fetch<'a> {
+    pub fn new(memory: &'a [u32], draw: &Draw<'a>, material: u32, light: Option<&'a VertexLight>) -> Fetch<'a> {
         let words = |words: Words<'a>| match words {
             Words::Inline(words) => words,
             Words::Memory { address, words } => &memory[address as usize / 4..][..words as usize],
         };
+        let normal = 3 + usize::from(draw.coloured);
+        let coordinates = normal + if draw.normals { 3 } else { 0 };
         Fetch {
             vertices: words(draw.vertices),
-            stride: if draw.coloured { 4 } else { 3 },
+            stride: coordinates + if draw.coordinates { 2 } else { 0 },
             indices: draw.indices.map(words),
             last: (draw.vertex_count as usize).saturating_sub(1),
             material,
+            coloured: draw.coloured,
+            normal: draw.normals.then_some(normal),
+            coordinates: draw.coordinates.then_some(coordinates),
+            light,
         }
     }
 
@@ -67,13 +93,57 @@ impl<'a> Fetch<'a> {
         self.indices.map_or(element, |indices| (indices[element] as usize).min(self.last))
     }
 
-    /// Vertex number `vertex`. Denormals read as 0, infinities as the largest finite number.
+    /// Vertex number `vertex`, as it stands. Denormals read as 0, infinities as the largest finite number.
     #[must_use]
     #[inline(always)]
     pub fn vertex(&self, vertex: usize) -> RawVertex {
         let words = &self.vertices[vertex * self.stride..][..self.stride];
-        let colour = if self.stride == 4 { words[3] } else { self.material };
+        let colour = if self.coloured { words[3] } else { self.material };
         RawVertex { position: [number(words[0]), number(words[1]), number(words[2])], colour }
+    }
+
+    /// Light falls on the vertices.
+    #[must_use]
+    pub fn is_lit(&self) -> bool {
+        self.light.is_some()
+    }
+
+    /// Vertex number `vertex` in the light that falls on it, if any does.
+    #[must_use]
+    pub fn lit_vertex(&self, vertex: usize) -> RawVertex {
+        let raw = self.vertex(vertex);
+        let Some(light) = self.light else {
+            return raw;
+        };
+        let carried = self.parameters(vertex);
+        let position = light.transform.eye_position(raw.position).map(|c| c as f32);
+        let normal = light.transform.eye_normal(carried.normal).map(|c| c as f32);
+        RawVertex { colour: light.lights.lit(raw.colour, position, normal), ..raw }
+    }
+
+    /// What vertex number `vertex` carries.
+    #[must_use]
+    fn parameters(&self, vertex: usize) -> VertexParameters {
+        let words = &self.vertices[vertex * self.stride..][..self.stride];
+        let at = |first: usize, k: usize| number(words[first + k]);
+        VertexParameters {
+            position: [0, 1, 2].map(|k| at(0, k)),
+            normal: self.normal.map_or([0.0; 3], |first| [0, 1, 2].map(|k| at(first, k))),
+            coordinates: self.coordinates.map_or([0.0; 2], |first| [0, 1].map(|k| at(first, k))),
+        }
+    }
+
+    /// What the vertices of primitive `number` carry.
+    #[must_use]
+    pub fn primitive(&self, topology: Topology, number: u32) -> Parameters {
+        let n = number as usize;
+        let elements = match topology {
+            Topology::Triangles => [3 * n, 3 * n + 1, 3 * n + 2],
+            Topology::Lines => [2 * n, 2 * n + 1, 2 * n + 1],
+            Topology::LineStrip => [n, n + 1, n + 1],
+            Topology::Points => [n; 3],
+        };
+        elements.map(|element| self.parameters(self.vertex_of(element)))
     }
 }
 

@@ -106,6 +106,21 @@ impl Transform {
         (in_band && in_depth && !depth.is_nan()).then(|| self.snap(screen, depth, raw.colour, reciprocal_w))
     }
 
+    /// The vertex in homogeneous screen coordinates: x w, y w, w, with x, y in pixels; snapped where it lies in front of
+    /// the viewer and in the guard band.
+    #[must_use]
+    pub fn homogeneous(&self, position: [f32; 3]) -> [f64; 3] {
+        let [x, y, z] = position.map(f64::from);
+        let p = if self.identity { [x, y, z, 1.0] } else { apply(&self.clip, x, y, z) };
+        let w = p[3];
+        let screen = [0, 1].map(|k| p[k] / w * self.scale[k] + self.offset[k]);
+        if w > 0.0 && (0..2).all(|k| (screen[k] - self.centre[k]).abs() <= GUARD_BAND) {
+            let [x, y] = screen.map(|c| ((c * self.grid + ROUND) - ROUND) / self.grid * w);
+            return [x, y, w];
+        }
+        [p[0] * self.scale[0] + w * self.offset[0], p[1] * self.scale[1] + w * self.offset[1], w]
+    }
+
     /// The vertex in clip space, for the clip stage; `None` if it holds a NaN.
     #[must_use]
     pub fn clip_space(&self, raw: &RawVertex) -> Option<ClipVertex> {

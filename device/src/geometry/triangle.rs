@@ -71,12 +71,12 @@ impl Triangle {
         Some((triangle, columns))
     }
 
-    /// The edges alone, on two grids whose columns and rows are 2^pitch u apart, walked from row `top` on where the
+    /// The edges alone, on grids whose columns and rows are 2^pitch u apart, walked from row `top` on where the
     /// triangle begins above: so no walk is longer than the rows that are asked for. The planes are left empty. `None`
     /// if no row of a grid from its `top` on, or no column, is met. A grid is its pitches in x and y, and `top`.
     #[must_use]
     #[inline(always)]
-    pub fn outlines(v: &[ScreenVertex; 3], grids: [([u32; 2], i32); 2]) -> [Option<Triangle>; 2] {
+    pub fn outlines<const N: usize>(v: &[ScreenVertex; 3], grids: [([u32; 2], i32); N]) -> [Option<Triangle>; N] {
         let sides = Sides::new(v);
         grids.map(|(pitch, top)| sides.outline(pitch, top))
     }

@@ -5,21 +5,84 @@
 
 use super::z_buffer::DepthTest;
 use crate::geometry::assembly::{List, Shape};
-use crate::shading::plane::Interpolation;
-use zga_firmware::checked::Rectangle;
+use crate::hidden::z_buffer::band::Setting;
+use crate::shading::parameters::Parameters;
+use crate::shading::pixel::{PixelShading, ShadingCounts};
+use crate::shading::plane::{Interpolation, Shade};
+use std::sync::Arc;
+use zga_firmware::checked::{Rectangle, Target};
 
 /// Most items of a scene that is held back: about 300 MiB.
 pub const HELD_LIMIT: usize = 1 << 20;
 
-/// State that the primitives of a draw share.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// State that the primitives of a draw share; a primitive whose colours go through more has one of its own.
+#[derive(Clone, Debug, PartialEq)]
 pub struct HeldDraw {
     /// Depth test; `None` where depth is not called for: everything passes, no depth is stored.
     pub test: Option<DepthTest>,
     /// Which colour interpolators are called.
     pub interpolation: Interpolation,
+    /// What interpolated colours go through.
+    pub shading: Option<HeldShading>,
     /// Pixels that may change, inside the target.
     pub scissor: Rectangle,
+}
+
+/// What the colours of one primitive go through.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldShading {
+    /// The same for all of a draw.
+    pub pixel: Arc<PixelShading>,
+    /// What its vertices carry.
+    pub vertices: Box<Parameters>,
+}
+
+impl HeldShading {
+    /// That of primitive `number` of a draw.
+    #[must_use]
+    pub fn of(setting: &Setting, number: u32) -> Option<HeldShading> {
+        let (pixel, vertices) = setting.shade(number).pixel?;
+        Some(HeldShading { pixel: Arc::clone(pixel), vertices: Box::new(*vertices) })
+    }
+
+    /// The references that a shade is made of.
+    #[must_use]
+    pub fn parts(&self) -> (&Arc<PixelShading>, &Parameters) {
+        (&self.pixel, &self.vertices)
+    }
+}
+
+impl HeldDraw {
+    /// How the pixels of a primitive get their colours.
+    #[must_use]
+    pub fn shade(&self) -> Shade<'_> {
+        Shade { interpolation: self.interpolation, pixel: self.shading.as_ref().map(HeldShading::parts) }
+    }
+
+    /// Whether shading does anything for its pixels.
+    #[must_use]
+    pub fn is_shaded(&self) -> bool {
+        self.interpolation != Interpolation::Flat || self.shading.is_some()
+    }
+
+    /// Whether the texture has holes.
+    #[must_use]
+    pub fn has_holes(&self) -> bool {
+        self.shading.as_ref().is_some_and(|shading| shading.pixel.punch_through().is_some())
+    }
+
+    /// What looking for holes among so many fragments costs, where so many are holes.
+    #[must_use]
+    pub fn looked_up(&self, fragments: u64, holes: u64) -> ShadingCounts {
+        let shading = self.shading.as_ref();
+        shading.map_or(ShadingCounts::default(), |shading| shading.pixel.looked_up(fragments, holes))
+    }
+
+    /// What a pixel costs beyond its interpolated colour.
+    #[must_use]
+    pub fn cost(&self) -> ShadingCounts {
+        self.shading.as_ref().map_or(ShadingCounts::default(), |shading| shading.pixel.cost())
+    }
 }
 
 /// A part of a scene.
@@ -37,6 +100,30 @@ pub enum Item {
         /// Depth to be stored.
         depth: Option<i32>,
     },
+}
+
+/// Depths before and after a scene that is drawn at once: those of the Z buffer, or, where somebody asks for them, of
+/// registers whose contents would be lost.
+#[derive(Debug)]
+pub struct Depths<'m> {
+    /// Rows of `pitch`.
+    pub rows: &'m mut [i32],
+    /// Elements from a row to the next; 0 where nobody asks.
+    pub pitch: usize,
+}
+
+impl<'m> Depths<'m> {
+    /// Those of the target's Z buffer, which are in `rows`; nobody's where there is none.
+    #[must_use]
+    pub fn of(target: &Target, rows: &'m mut [i32]) -> Self {
+        Depths { rows, pitch: target.depth.map_or(0, |depth| depth.pitch as usize / 4) }
+    }
+
+    /// Depth of pixel (`x`, `y`); anything below the last line.
+    #[must_use]
+    pub fn at(&self, x: u32, y: u32) -> Option<i32> {
+        if self.pitch == 0 { None } else { self.rows.get(y as usize * self.pitch + x as usize).copied() }
+    }
 }
 
 /// What the picture was before the first item.
@@ -74,13 +161,16 @@ impl Held {
         self.background = Background::default();
     }
 
-    /// Adds the primitives of a list that was assembled for a draw.
-    pub fn add(&mut self, draw: HeldDraw, list: &List) {
-        if self.draws.last() != Some(&draw) {
-            self.draws.push(draw);
+    /// Adds the primitives of a list that was assembled for a draw. `shading` says what the colours of a primitive go
+    /// through, given its number in the draw.
+    pub fn add(&mut self, draw: &HeldDraw, list: &List, shading: impl Fn(u32) -> Option<HeldShading>) {
+        for (shape, number) in &list.shapes {
+            let draw = HeldDraw { shading: shading(*number), ..draw.clone() };
+            if draw.shading.is_some() || self.draws.last() != Some(&draw) {
+                self.draws.push(draw);
+            }
+            self.items.push(Item::Primitive(*shape, self.draws.len() as u32 - 1));
         }
-        let number = self.draws.len() as u32 - 1;
-        self.items.extend(list.shapes.iter().map(|(shape, _)| Item::Primitive(*shape, number)));
     }
 
     /// Adds a clear, to the background or to what is drawn over it.

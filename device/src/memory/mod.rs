@@ -34,6 +34,8 @@ pub(crate) struct VideoMemory {
     remembered: Range<usize>,
     /// Counts changes that others may have made there.
     foreign: u64,
+    /// Words that the texture unit has decoded, and whether they may have changed since.
+    texels: Vec<(Range<usize>, bool)>,
 }
 
 impl VideoMemory {
@@ -47,6 +49,7 @@ impl VideoMemory {
             watched: 0..0,
             remembered: 0..0,
             foreign: 0,
+            texels: Vec::new(),
         }
     }
 
@@ -59,6 +62,7 @@ impl VideoMemory {
     pub(crate) fn words_mut(&mut self) -> &mut [u32] {
         self.generation += 1;
         self.foreign += 1;
+        self.changed(0..self.words.len());
         &mut self.words
     }
 
@@ -75,6 +79,7 @@ impl VideoMemory {
         if changed.start < self.remembered.end && self.remembered.start < changed.end {
             self.foreign += 1;
         }
+        self.changed(changed);
         &mut self.words
     }
 
@@ -130,7 +135,32 @@ impl VideoMemory {
         if index < self.remembered.end && index + count > self.remembered.start {
             self.foreign += 1;
         }
+        self.changed(index..index + count);
         count
+    }
+
+    /// Words may have changed that somebody keeps texels of.
+    pub(crate) fn changed(&mut self, words: Range<usize>) {
+        for (kept, stale) in &mut self.texels {
+            *stale |= words.start < kept.end && kept.start < words.end;
+        }
+    }
+
+    /// The texture unit keeps what these words hold; the range is told apart by its place, in order of these calls.
+    pub(crate) fn keep_texels(&mut self, words: Range<usize>) {
+        self.texels.push((words, false));
+    }
+
+    /// Whether the words of the range at `place` may have changed since they were kept.
+    pub(crate) fn texels_are_stale(&self, place: usize) -> bool {
+        self.texels.get(place).is_none_or(|(_, stale)| *stale)
+    }
+
+    /// The texture unit does not keep the range at `place` any more; those behind it move up.
+    pub(crate) fn forget_texels(&mut self, place: usize) {
+        if place < self.texels.len() {
+            self.texels.remove(place);
+        }
     }
 
     /// The pipeline remembers what these words hold.

@@ -5,7 +5,6 @@
 
 use crate::hidden::z_buffer::band::Setting;
 use crate::hidden::z_buffer::tile::TILE;
-use crate::shading::plane::Interpolation;
 use std::ops::Range;
 
 /// One plane: the rows of some bands. A plane that a path has no use for is empty.
@@ -65,22 +64,32 @@ pub struct Sight<'m> {
     pub late: Plane<'m, u16>,
     /// Plane segments on each line.
     pub tokens: Plane<'m, u32>,
+    /// By what more than colours each pixel is shaded: a place in the path's list of costs, plus 1; 0 is nothing. Rows
+    /// of whole chunks, and only once a draw has called for more.
+    pub costs: Plane<'m, u16>,
+    /// What the draw at hand notes there.
+    pub cost: u16,
 }
 
 impl Sight<'_> {
     /// Nothing is kept.
     #[must_use]
     pub fn none() -> Self {
-        Sight { winner: Plane::none(), late: Plane::none(), tokens: Plane::none() }
+        let (costs, cost) = (Plane::none(), 0);
+        Sight { winner: Plane::none(), late: Plane::none(), tokens: Plane::none(), costs, cost }
     }
 
     /// Notes one pixel that a draw has won, for planes that begin with row 0.
     pub fn note(&mut self, setting: &Setting, x: usize, y: usize) {
-        let at = y * (setting.width as usize).div_ceil(16) + x / 16;
+        let chunks = (setting.width as usize).div_ceil(16);
+        let at = y * chunks + x / 16;
         let bit = 1_u16 << (x % 16);
+        if let Some(cost) = self.costs.rows.get_mut(y * chunks * 16 + x) {
+            *cost = self.cost;
+        }
         if let (Some(winner), Some(late)) = (self.winner.rows.get_mut(at), self.late.rows.get_mut(at)) {
             *winner |= bit;
-            *late = if setting.interpolation == Interpolation::Flat { *late & !bit } else { *late | bit };
+            *late = if setting.is_shaded() { *late | bit } else { *late & !bit };
         }
     }
 
@@ -100,13 +109,15 @@ impl Surfaces<'_> {
         let (winner, winner_after) = self.sight.winner.split(bands);
         let (late, late_after) = self.sight.late.split(bands);
         let (tokens, tokens_after) = self.sight.tokens.split(bands);
+        let (costs, costs_after) = self.sight.costs.split(bands);
+        let cost = self.sight.cost;
         (
-            Surfaces { colour, depth, words, sight: Sight { winner, late, tokens } },
+            Surfaces { colour, depth, words, sight: Sight { winner, late, tokens, costs, cost } },
             Surfaces {
                 colour: colour_after,
                 depth: depth_after,
                 words: words_after,
-                sight: Sight { winner: winner_after, late: late_after, tokens: tokens_after },
+                sight: Sight { winner: winner_after, late: late_after, tokens: tokens_after, costs: costs_after, cost },
             },
         )
     }

@@ -8,6 +8,7 @@
 //! [`crate::geometry`]); the rest is charged by the hidden-surface path.
 
 pub mod bands;
+mod layers_path;
 mod sorted;
 mod subpixel_path;
 mod workers;
@@ -16,10 +17,11 @@ mod za_path;
 use crate::geometry::GeometryRegisters;
 use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::{Assembler, GeometryCounts, List, Widths};
-use crate::geometry::fetch::Fetch;
+use crate::geometry::fetch::{Fetch, VertexLight};
 use crate::geometry::transform::Transform;
+use crate::hidden::held::HeldShading;
 use crate::hidden::systolic::Waves;
-use crate::hidden::z_buffer::band::Setting;
+use crate::hidden::z_buffer::band::{DrawShading, Setting};
 use crate::hidden::z_buffer::tile::TILE;
 use crate::hidden::z_buffer::uniform::Uniform;
 use crate::hidden::z_buffer::{self, DepthTest, specification, surfaces};
@@ -28,20 +30,29 @@ use crate::memory::VideoMemory;
 use crate::memory::areas::whole;
 use crate::probe::account::{Account, Clocks};
 use crate::probe::pixel::PixelProbe;
+use crate::shading::fog::FogMixer;
+use crate::shading::light::{Lights, normal_matrix};
+use crate::shading::parameters::{ParameterTransform, Parameters};
+use crate::shading::pixel::{AlphaRule, PixelShading, Textured};
 use crate::shading::plane::Interpolation;
 use crate::subpixel::map::SubpixelMap;
 use crate::subpixel::scene::{Scene, Taken, Taking};
 use crate::subpixel::unit::Unit;
+use crate::texture::store::TextureStore;
 use bands::{Plane, Sight, Surfaces};
 use fearless_simd::Level;
 use rayon::prelude::*;
 use sorted::Sorted;
 use std::ops::Range;
+use std::sync::Arc;
 use workers::{SHARE, Wanted, Workers};
 use zga_abi::format::{Fidelity, HiddenSurface, Topology};
 use zga_abi::{Counter, Effects};
 use zga_firmware::Stopped;
 use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Target};
+
+/// Most bytes of texels that a scene decodes for what is held back until it ends.
+const HELD_TEXELS: u64 = 1 << 30;
 
 /// Most host threads.
 const MAX_THREADS: usize = 256;
@@ -113,10 +124,20 @@ pub struct Pipeline {
     uniform: Option<Uniform>,
     /// The scene of a path that sorts before it draws.
     sorted: Sorted,
+    /// Textures that draws have called for.
+    textures: TextureStore,
+    /// Bytes of texels decoded in this scene for what is held back.
+    held_texels: u64,
+    /// Room for what vertices carry.
+    parameters: Vec<Parameters>,
     /// What the sub-pixel unit has of the scene.
     scene: Scene,
     /// The sub-pixel unit.
     unit: Unit,
+    /// The layer unit.
+    layers: crate::layers::unit::Unit,
+    /// What has stopped a clear.
+    owed: Option<Stopped>,
     /// The next scene with a grid is to be noted.
     wants_map: bool,
     /// The last one that was.
@@ -142,8 +163,13 @@ impl Pipeline {
             list: List::default(),
             uniform: None,
             sorted: Sorted::default(),
+            textures: TextureStore::default(),
+            held_texels: 0,
+            parameters: Vec::new(),
             scene: Scene::default(),
             unit: Unit::default(),
+            layers: crate::layers::unit::Unit::default(),
+            owed: None,
             wants_map: false,
             map: None,
         }
@@ -153,6 +179,8 @@ impl Pipeline {
     pub fn begin_scene(&mut self, memory: &mut VideoMemory, target: &Target, account: &mut Account) {
         self.target = Some(*target);
         self.scene.begin();
+        self.held_texels = 0;
+        self.owed = None;
         // Another frame buffer could lie over the Z buffer that is remembered.
         self.uniform = self.uniform.take().filter(|uniform| uniform.is_of(target));
         if target.hidden_surface == HiddenSurface::Za {
@@ -193,12 +221,15 @@ impl Pipeline {
         let drawn = match target.hidden_surface {
             HiddenSurface::ZBuffer | HiddenSurface::Za => Ok(()),
             HiddenSurface::Systolic | HiddenSurface::Tile => {
-                self.sorted.end(memory.drawing(), &target, self.level, account, stop)
+                let layers = self.has_layers(&target);
+                self.sorted.end(memory.drawing(), &target, self.level, layers, account, stop)
             }
         };
         let spent = account.total().0 - begun.0;
+        let stop = |clocks: Clocks| stop(Clocks(spent + clocks.0));
         let resolved = drawn
-            .and_then(|()| self.resolve_subpixels(memory, &target, account, &|clocks| stop(Clocks(spent + clocks.0))));
+            .and_then(|()| self.resolve_subpixels(memory, &target, account, &stop))
+            .and_then(|()| self.compose_layers(memory, &target, account, &stop));
         if target.hidden_surface == HiddenSurface::Za {
             memory.parts().1.end_scene();
         }
@@ -206,19 +237,37 @@ impl Pipeline {
     }
 
     /// Gives scratch memory and threads back. Which blocks are logically cleared is no scratch: it stays.
-    pub fn power_off(&mut self) {
+    pub fn power_off(&mut self, memory: &mut VideoMemory) {
+        self.power_texture_off(memory);
         self.workers = Workers::default();
         self.shared = Vec::new();
         self.list = List::default();
         self.uniform = None;
         self.sorted.power_off();
         self.power_subpixels_off();
+        self.power_layers_off();
+        self.power_scene_off();
+    }
+
+    /// Gives the memory back that scenes wait in.
+    pub fn power_scene_off(&mut self) {
+        self.scene = Scene::default();
+    }
+
+    /// Gives the texture unit's memory back.
+    pub fn power_texture_off(&mut self, memory: &mut VideoMemory) {
+        self.textures.power_off(memory);
+        self.parameters = Vec::new();
     }
 
     /// Gives the sub-pixel unit's memory back.
     pub fn power_subpixels_off(&mut self) {
-        self.scene = Scene::default();
         self.unit = Unit::default();
+    }
+
+    /// Gives the layer unit's memory back.
+    pub fn power_layers_off(&mut self) {
+        self.layers = crate::layers::unit::Unit::default();
     }
 
     /// Has the clocked systolic array's next scene recorded.
@@ -261,16 +310,25 @@ impl Pipeline {
     }
 
     /// Clears planes of the target.
-    pub fn clear(&mut self, memory: &mut VideoMemory, clear: &Clear, account: &mut Account) {
+    /// What `stop` says of the layers that are composed before it is said by the next draw, or when the scene ends.
+    pub fn clear(
+        &mut self,
+        memory: &mut VideoMemory,
+        clear: &Clear,
+        account: &mut Account,
+        stop: &dyn Fn(Clocks) -> Option<Stopped>,
+    ) {
         let Some(target) = self.target else {
             return;
         };
         self.take_clear(memory, &target, clear, account);
+        self.clear_layers(memory, &target, clear, account, stop);
         match target.hidden_surface {
             HiddenSurface::ZBuffer => self.clear_z_buffer(memory, &target, clear, account),
             HiddenSurface::Za => za_path::clear(memory, &target, clear, account),
             HiddenSurface::Systolic | HiddenSurface::Tile => self.sorted.clear(memory.drawing(), &target, clear),
         }
+        drawn_to(memory, &target);
         self.remember(memory);
     }
 
@@ -326,35 +384,53 @@ impl Pipeline {
         let Some(target) = self.target else {
             return Ok(());
         };
+        if let Some(stopped) = self.owed {
+            return Err(stopped);
+        }
         let size = [target.colour.width, target.colour.height];
         let transform = Transform::new(geometry, state.effects, size, target.depth_format, target.subpixel_bits);
-        let setting = setting(&target, state);
+        let shading = self.shading(memory, &target, geometry, &transform, state, draw, account)?;
+        let light = state.light.filter(|light| !light.per_pixel).map(|light| VertexLight {
+            lights: Lights::read(memory.words(), &light),
+            transform: parameter_transform(geometry, &transform, state, draw),
+        });
+        let mut setting = setting(&target, state);
         let begun = account.total();
         self.keep(memory, &target, account);
-        let path = self.path(memory, &target, &setting, account);
+        let mut path = self.path(memory, &target, &setting, account);
         let masks = state.effects.contains(Effects::ANTI_ALIAS);
         let masks = masks.then_some(Widths { line: state.line_width, point: state.point_size });
-        let fetch = Fetch::new(memory.words(), draw, state.material_colour);
+        let fetch = Fetch::new(memory.words(), draw, state.material_colour, light.as_ref());
         let primitives = draw.topology.primitives(fetch.elements() as u32);
-        if fetch.indexed() {
-            self.transform_shared(&fetch, &transform, account);
+        let shared = fetch.indexed() || fetch.is_lit();
+        if shared {
+            self.transform_shared(&fetch, &transform);
         }
-        let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity));
+        if fetch.indexed() {
+            let vertices = fetch.vertices() as u64;
+            account.add(Counter::GeometryVertices, vertices);
+            account.charge(Counter::CyclesGeometry, Clocks(4 * vertices));
+            charge_light(light.as_ref(), vertices, account);
+        }
+        let holes = shading.as_ref().is_some_and(|shading| shading.punch_through().is_some());
+        let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity, holes));
         let mut first = 0;
         while first < primitives {
             if self.scene.full() {
                 return Err(Stopped::SceneFull);
             }
+            let taken_before = self.scene.items.len();
+            let alphas = shading.as_ref().map_or(AlphaRule::Vertices, |shading| shading.alphas());
             let taken = match target.subpixel {
-                Some(_) => self.scene.draw(state, setting.test, setting.interpolation),
-                None => None,
+                Some(_) => self.scene.draw(state, setting.test, setting.interpolation, alphas),
+                None => self.scene.wait(state, setting.test, setting.interpolation, alphas),
             };
             let assembler = Assembler {
-                fetch: Fetch::new(memory.words(), draw, state.material_colour),
+                fetch: Fetch::new(memory.words(), draw, state.material_colour, light.as_ref()),
                 transform: &transform,
                 format: target.depth_format,
                 topology: draw.topology,
-                shared: draw.indices.is_some().then_some(&self.shared[..]),
+                shared: shared.then_some(&self.shared[..]),
                 masks,
             };
             let (before, counts);
@@ -363,7 +439,7 @@ impl Pipeline {
                 match fast {
                     Some(_) => {
                         let sorts = if path.is_sorted() { self.sorted.sorts(&target) } else { None };
-                        let wanted = Wanted { sorts, taken };
+                        let wanted = Wanted { sorts, taken, numbers: shading.is_some() };
                         self.workers.assemble(
                             self.threads,
                             &assembler,
@@ -376,7 +452,17 @@ impl Pipeline {
                     None => list(&mut self.list, &assembler, setting.scissor, first..primitives, taken),
                 },
             );
-            charge_geometry(&counts, draw, account);
+            let assembled = charge_geometry(&counts, draw, account);
+            charge_light(light.as_ref(), assembled, account);
+            if let Some(pixel) = &shading {
+                let fetch = Fetch::new(memory.words(), draw, state.material_colour, None);
+                let mut vertices = std::mem::take(&mut self.parameters);
+                vertices.clear();
+                vertices.extend((before..first).map(|number| fetch.primitive(draw.topology, number)));
+                setting.shading = Some(Arc::new(DrawShading { pixel: Arc::clone(pixel), first: before, vertices }));
+                path.set_shading(&setting);
+                self.scene.shade(taken_before, |number| HeldShading::of(&setting, number));
+            }
             match fast {
                 Some(level) => self.draw_bins(level, memory, &target, &setting, &path, account),
                 None => {
@@ -388,6 +474,10 @@ impl Pipeline {
                 }
             }
             debug_assert!(first > before);
+            path.set_shading(&Setting { shading: None, ..setting.clone() });
+            if let Some(Ok(spent)) = setting.shading.take().map(Arc::try_unwrap) {
+                self.parameters = spent.vertices;
+            }
             if let Some(stopped) = stop(Clocks(account.total().0 - begun.0)) {
                 return Err(stopped);
             }
@@ -395,7 +485,56 @@ impl Pipeline {
         if let Some(probe) = probe {
             probe.draw = probe.draw.wrapping_add(1);
         }
+        drawn_to(memory, &target);
         Ok(())
+    }
+
+    /// What the interpolated colours of a draw go through; none where it calls for nothing of that kind.
+    #[expect(clippy::too_many_arguments, reason = "the unit's inputs; a struct would only be taken apart again")]
+    fn shading(
+        &mut self,
+        memory: &mut VideoMemory,
+        target: &Target,
+        geometry: &GeometryRegisters,
+        transform: &Transform,
+        state: &DrawState,
+        draw: &Draw<'_>,
+        account: &mut Account,
+    ) -> Result<Option<Arc<PixelShading>>, Stopped> {
+        let light = state.light.filter(|light| light.per_pixel);
+        if state.texture.is_none() && state.fog.is_none() && light.is_none() {
+            return Ok(None);
+        }
+        let mut texture = None;
+        if let Some(called) = &state.texture {
+            let (texels, decoded) = self.textures.texels(memory, called);
+            if decoded {
+                account.maximum(Counter::TextureDecodedBytes, self.textures.bytes());
+                self.held_texels += if self.waits(target, state) { texels.bytes() } else { 0 };
+            }
+            if self.held_texels > HELD_TEXELS {
+                return Err(Stopped::SceneFull);
+            }
+            texture = Some(Textured {
+                texture: texels,
+                function: called.function,
+                constant: called.colour,
+                filter: called.filter,
+                mip_map: called.mip_map && called.levels > 1,
+                punch_through: state.punch_through,
+            });
+        }
+        Ok(Some(Arc::new(PixelShading {
+            transform: parameter_transform(geometry, transform, state, draw),
+            light: light.map(|light| Lights::read(memory.words(), &light)),
+            texture,
+            fog: state.fog.as_ref().map(FogMixer::new),
+        })))
+    }
+
+    /// Whether primitives of a draw, or some of them, wait until the scene ends.
+    fn waits(&self, target: &Target, state: &DrawState) -> bool {
+        sorted::is_held(target) || target.subpixel.is_some() || state.effects.contains(Effects::BLEND)
     }
 
     /// What decides visibility in a draw.
@@ -407,17 +546,15 @@ impl Pipeline {
         }
     }
 
-    /// Transforms each vertex of an indexed draw once.
-    fn transform_shared(&mut self, fetch: &Fetch<'_>, transform: &Transform, account: &mut Account) {
+    /// Transforms each vertex of a draw once.
+    fn transform_shared(&mut self, fetch: &Fetch<'_>, transform: &Transform) {
         let count = fetch.vertices();
-        let vertex = |v: usize| transform.inside(&fetch.vertex(v));
+        let vertex = |v: usize| transform.inside(&fetch.lit_vertex(v));
         self.shared.clear();
         match self.workers.pool_for(self.threads, count >= 2 * SHARE as usize) {
             Some(pool) => pool.install(|| (0..count).into_par_iter().map(vertex).collect_into_vec(&mut self.shared)),
             None => self.shared.extend((0..count).map(vertex)),
         }
-        account.add(Counter::GeometryVertices, count as u64);
-        account.charge(Counter::CyclesGeometry, Clocks(4 * count as u64));
     }
 
     /// Draws what was assembled into bins.
@@ -459,12 +596,12 @@ impl Pipeline {
                 za::charge(&counts, draw, account);
             }
             Path::Sorted { .. } => {
-                let setting = Setting { depth_pitch: Sorted::depth_pitch(target), ..*setting };
+                let setting = Setting { depth_pitch: Sorted::depth_pitch(target), ..setting.clone() };
                 let planes = self.sorted.planes(memory.drawing(), target, &setting, first);
                 let counts = self.workers.draw(threads, planes, bands, |shares, band, planes, scratch| {
                     setting.draw_band(level, shares, band, planes, scratch)
                 });
-                self.sorted.add_spans(counts.spans);
+                self.sorted.add(&counts, &setting);
             }
         }
     }
@@ -479,7 +616,7 @@ impl Pipeline {
         account: &mut Account,
     ) -> Result<(), Stopped> {
         self.uniform = None;
-        let shapes = self.list.shapes.iter().map(|(shape, _)| shape);
+        let shapes = self.list.shapes.iter().map(|(shape, number)| (shape, *number));
         match path {
             Path::ZBuffer => {
                 let (colour, depth) = surfaces(memory.drawing(), target);
@@ -503,12 +640,12 @@ impl Pipeline {
                 }
             }
             Path::Sorted { held: false } => {
-                let setting = Setting { depth_pitch: Sorted::depth_pitch(target), ..*setting };
+                let setting = Setting { depth_pitch: Sorted::depth_pitch(target), ..setting.clone() };
                 self.sorted.note(target, setting.scissor, &self.list);
                 let Surfaces { colour, depth, mut sight, .. } =
                     self.sorted.planes(memory.drawing(), target, &setting, 0);
                 let counts = specification::draw_noting(&setting, shapes, colour.rows, depth.rows, &mut sight);
-                self.sorted.add_spans(counts.spans);
+                self.sorted.add(&counts, &setting);
             }
         }
         Ok(())
@@ -526,17 +663,61 @@ enum Path {
 }
 
 impl Path {
-    /// Whether primitives are drawn from bins where the host can: never where a unit is to be stepped.
-    fn is_fast(&self, fidelity: Fidelity) -> bool {
+    /// Whether primitives are drawn from bins where the host can: never where a unit is to be stepped. The Za path has no
+    /// fast way for `holes` of a texture.
+    fn is_fast(&self, fidelity: Fidelity, holes: bool) -> bool {
         match self {
             Path::ZBuffer => true,
-            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast(),
+            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast() && !holes,
             Path::Sorted { held } => !held,
         }
     }
 
     fn is_sorted(&self) -> bool {
         matches!(self, Path::Sorted { .. })
+    }
+
+    /// Takes over what the colours of the primitives at hand go through.
+    fn set_shading(&mut self, setting: &Setting) {
+        if let Path::Za(draw) = self {
+            draw.pixels.shading.clone_from(&setting.shading);
+        }
+    }
+}
+
+/// The frame was drawn to: textures that lie in it may have changed.
+fn drawn_to(memory: &mut VideoMemory, target: &Target) {
+    let words = |bytes: Range<u64>| (bytes.start / 4) as usize..bytes.end.div_ceil(4) as usize;
+    memory.changed(words(target.colour.bytes()));
+    if let Some(depth) = target.depth {
+        let bytes = u64::from(depth.pitch) * u64::from(target.colour.height);
+        memory.changed(words(u64::from(depth.base)..u64::from(depth.base) + bytes));
+    }
+}
+
+/// What the parameters of a draw's vertices go through.
+fn parameter_transform(
+    geometry: &GeometryRegisters,
+    transform: &Transform,
+    state: &DrawState,
+    draw: &Draw<'_>,
+) -> ParameterTransform {
+    let m = geometry.object_eye.map(f64::from);
+    ParameterTransform {
+        screen: transform.clone(),
+        eye: [0, 1, 2, 3].map(|row| [0, 1, 2, 3].map(|column| m[4 * row + column])),
+        normal: normal_matrix(&geometry.object_eye),
+        perspective: state.effects.contains(Effects::PERSPECTIVE),
+        topology: draw.topology,
+    }
+}
+
+/// Charges the light of so many vertices: 4 clocks for each light.
+fn charge_light(light: Option<&VertexLight>, vertices: u64, account: &mut Account) {
+    if let Some(light) = light {
+        let lights = light.lights.count() as u64 * vertices;
+        account.add(Counter::ShadingLights, lights);
+        account.charge(Counter::CyclesShading, Clocks(4 * lights));
     }
 }
 
@@ -567,6 +748,8 @@ fn setting(target: &Target, state: &DrawState) -> Setting {
         } else {
             Interpolation::Affine
         },
+        shading: None,
+        cuts_segments: target.hidden_surface == HiddenSurface::Systolic,
         scissor: state.scissor,
         width: target.colour.width,
         pixel_format: target.colour.format,
@@ -589,8 +772,8 @@ fn list(
     (first, counts)
 }
 
-/// Charges the geometry unit's events of one batch.
-fn charge_geometry(counts: &GeometryCounts, draw: &Draw<'_>, account: &mut Account) {
+/// Charges the geometry unit's events of one batch; returns how many vertices were transformed for it.
+fn charge_geometry(counts: &GeometryCounts, draw: &Draw<'_>, account: &mut Account) -> u64 {
     let (vertices, set_up) = match draw.topology {
         Topology::Triangles => (3, 8),
         Topology::Lines => (2, 6),
@@ -604,6 +787,7 @@ fn charge_geometry(counts: &GeometryCounts, draw: &Draw<'_>, account: &mut Accou
     account.add(Counter::GeometryDiscarded, counts.discarded);
     let clocks = 4 * vertices + set_up * counts.primitives + 4 * counts.cuts;
     account.charge(Counter::CyclesGeometry, Clocks(clocks));
+    vertices
 }
 
 #[cfg(test)]
@@ -618,6 +802,8 @@ mod tests {
             test: Some(DepthTest::LESS),
             format: DepthFormat::default(),
             interpolation: Interpolation::Flat,
+            shading: None,
+            cuts_segments: false,
             scissor: Rectangle { x: 0, y: 0, right: 64, bottom: 64 },
             width: 64,
             pixel_format: PixelFormat::Xrgb8888,
@@ -633,7 +819,7 @@ mod tests {
             bypass: true,
             depth_buffer: true,
         });
-        assert!(path.is_fast(Fidelity::Functional));
-        assert!(!path.is_fast(Fidelity::Clocked), "the state machine must be stepped whatever the kernel");
+        assert!(path.is_fast(Fidelity::Functional, false));
+        assert!(!path.is_fast(Fidelity::Clocked, false), "the state machine must be stepped whatever the kernel");
     }
 }

@@ -12,15 +12,17 @@
 use super::bands::{Plane, Sight, Surfaces};
 use crate::geometry::assembly::{List, Shape, Sink};
 use crate::geometry::plane::below;
-use crate::hidden::held::{Background, Held, HeldDraw, Item};
+use crate::hidden::held::{Background, Depths, Held, HeldDraw, HeldShading, Item};
 use crate::hidden::systolic::{self, SystolicCounts, Waves};
 use crate::hidden::tile::Grid;
 use crate::hidden::tile::closed_form::{PixelCounts, Sorts, pixels_of_tile};
 use crate::hidden::tile::{self, scene};
 use crate::hidden::z_buffer::band::Setting;
 use crate::hidden::z_buffer::specification::meets;
+use crate::hidden::z_buffer::tile::TileCounts;
 use crate::hidden::z_buffer::{fill_colour, fill_depth, surfaces};
 use crate::probe::account::{Account, Clocks};
+use crate::shading::pixel::ShadingCounts;
 use fearless_simd::Level;
 use zga_abi::format::{Fidelity, HiddenSurface};
 use zga_firmware::Stopped;
@@ -38,16 +40,26 @@ pub(super) struct Sorted {
     /// the target counts, so that this does not depend on who finds that out.
     drawn: bool,
     background: Background,
-    /// Depths where the target has no Z buffer; rows of `depth_pitch`.
+    /// Depths where the target has no Z buffer; rows of `depth_pitch`. Of a scene that is held back only where layers
+    /// ask for them.
     depth: Vec<i32>,
+    /// Those of the scene so far are in `depth`, or in the Z buffer: layers were composed in its midst.
+    carried: bool,
     winner: Vec<u16>,
     late: Vec<u16>,
+    /// By what each pixel is shaded beyond its interpolated colour: a place in `prices`, plus 1. Empty until a draw calls
+    /// for more.
+    costs: Vec<u16>,
+    /// What pixels can cost, each once.
+    prices: Vec<ShadingCounts>,
     /// Plane segments on each line.
     tokens: Vec<u32>,
     /// The tile unit's sorts.
     sorts: Option<Sorts>,
     /// Runs of triangles on rows.
     spans: u64,
+    /// What looking for holes has cost.
+    looked_up: ShadingCounts,
     /// The scene, where it is held back.
     held: Held,
     /// Depth at the probed pixel of a scene that is held back, after so many of its items.
@@ -87,7 +99,9 @@ impl Sorted {
     pub(super) fn begin(&mut self) {
         self.used = false;
         self.drawn = false;
+        self.carried = false;
         self.spans = 0;
+        self.looked_up = ShadingCounts::default();
         self.background = Background::default();
         self.held.reset();
         self.probed = None;
@@ -103,6 +117,8 @@ impl Sorted {
             bits.clear();
             bits.resize(pitches.bits * height, 0);
         }
+        self.costs.clear();
+        self.prices.clear();
         self.tokens.clear();
         self.tokens.resize(height, 0);
         if target.depth.is_none() {
@@ -116,7 +132,8 @@ impl Sorted {
     fn before_draw(&mut self, target: &Target) {
         self.make_ready(target);
         let first = !std::mem::replace(&mut self.drawn, true);
-        if first && !is_held(target) && target.depth.is_none() && self.background.depth.is_none() {
+        let unknown = !self.carried && target.depth.is_none() && self.background.depth.is_none();
+        if first && unknown && !is_held(target) {
             self.depth.fill(target.depth_format.maximum() as i32);
         }
     }
@@ -172,6 +189,10 @@ impl Sorted {
                     *winner |= mask;
                     *late &= !mask;
                 }
+                if !self.costs.is_empty() {
+                    let row = y * pitch * CHUNK;
+                    self.costs[row + area.x as usize..row + area.right as usize].fill(0);
+                }
             }
         }
     }
@@ -190,6 +211,7 @@ impl Sorted {
         first: usize,
     ) -> Surfaces<'m> {
         let pitches = Pitches::of(target);
+        let cost = setting.shading.as_ref().map_or(0, |shading| self.price(target, shading.pixel.cost()));
         let (colours, depths) = surfaces(memory, target);
         let depths = if target.depth.is_some() { depths } else { &mut self.depth[..] };
         Surfaces {
@@ -200,8 +222,31 @@ impl Sorted {
                 winner: Plane::new(&mut self.winner, pitches.bits, first),
                 late: Plane::new(&mut self.late, pitches.bits, first),
                 tokens: Plane::new(&mut self.tokens, 1, first),
+                costs: Plane::new(&mut self.costs, pitches.bits * CHUNK, first),
+                cost,
             },
         }
+    }
+
+    /// What stands for pixels that cost so much beyond interpolated colours.
+    fn price(&mut self, target: &Target, cost: ShadingCounts) -> u16 {
+        if self.costs.is_empty() {
+            self.costs.resize(Pitches::of(target).bits * CHUNK * target.colour.height as usize, 0);
+        }
+        // Filters, lights and fog make fewer prices than 2^16.
+        let place = self.prices.iter().position(|price| *price == cost).unwrap_or_else(|| {
+            self.prices.push(cost);
+            self.prices.len() - 1
+        });
+        place as u16 + 1
+    }
+
+    /// What all pixels seen cost beyond interpolated colours.
+    fn shading(&self) -> ShadingCounts {
+        let mut pixels = vec![0_u64; self.prices.len() + 1];
+        self.costs.iter().for_each(|place| pixels[usize::from(*place)] += 1);
+        let sums = self.prices.iter().zip(&pixels[1..]).map(|(price, pixels)| price.times(*pixels));
+        sums.fold(self.looked_up, ShadingCounts::plus)
     }
 
     /// Where primitives of a functional draw are noted for the tile unit.
@@ -225,16 +270,18 @@ impl Sorted {
         }
     }
 
-    /// Adds spans of a functional draw.
-    pub(super) fn add_spans(&mut self, spans: u64) {
-        self.spans += spans;
+    /// Adds events of a functional draw.
+    pub(super) fn add(&mut self, counts: &TileCounts, setting: &Setting) {
+        self.spans += counts.spans;
+        self.looked_up = self.looked_up.plus(setting.looked_up(counts.covered, counts.holes));
     }
 
     /// Holds primitives back.
     pub(super) fn hold(&mut self, target: &Target, setting: &Setting, list: &List) {
         self.before_draw(target);
-        let draw = HeldDraw { test: setting.test, interpolation: setting.interpolation, scissor: setting.scissor };
-        self.held.add(draw, list);
+        let (test, interpolation, scissor) = (setting.test, setting.interpolation, setting.scissor);
+        let draw = HeldDraw { test, interpolation, shading: None, scissor };
+        self.held.add(&draw, list, |number| HeldShading::of(setting, number));
     }
 
     /// No more primitives can be held back.
@@ -249,9 +296,11 @@ impl Sorted {
         let surface = target.depth.map(|depth| memory.get(depth.base as usize / 4 + at).copied().unwrap_or(0) as i32);
         let maximum = target.depth_format.maximum() as i32;
         if !is_held(target) {
-            let own = if self.drawn || self.background.depth.is_some() { self.depth.get(at).copied() } else { None };
+            let known = self.drawn || self.carried || self.background.depth.is_some();
+            let own = if known { self.depth.get(at).copied() } else { None };
             return surface.or(own).unwrap_or(maximum);
         }
+        let surface = surface.or_else(|| if self.carried { self.depth.get(at).copied() } else { None });
         let (pixel, mut done, mut depth) = self.probed.unwrap_or(([x, y], 0, 0));
         if done == 0 || pixel != [x, y] {
             (done, depth) = (0, self.held.background.depth.or(surface).unwrap_or(maximum));
@@ -268,7 +317,38 @@ impl Sorted {
         self.used
     }
 
-    /// The scene ends: a scene that was held back is drawn, and its events are charged.
+    /// Layers are to be composed in the midst of a scene: what there is of it is drawn, and the scene begins anew with
+    /// that.
+    ///
+    /// # Errors
+    /// [`Stopped`] as `stop` says; what was drawn until then stays.
+    pub(super) fn draw_so_far(
+        &mut self,
+        memory: &mut [u32],
+        target: &Target,
+        level: Option<Level>,
+        account: &mut Account,
+        stop: &dyn Fn(Clocks) -> Option<Stopped>,
+    ) -> Result<(), Stopped> {
+        let drawn = self.end(memory, target, level, true, account, stop);
+        self.begin();
+        self.carried = true;
+        drawn
+    }
+
+    /// Frame buffer and depths of what is drawn, for layers: elements from a row of depths to the next.
+    pub(super) fn picture<'m>(
+        &'m mut self,
+        memory: &'m mut [u32],
+        target: &Target,
+    ) -> (&'m mut [u32], &'m mut [i32], usize) {
+        let (colours, depths) = surfaces(memory, target);
+        let depths = if target.depth.is_some() { depths } else { &mut self.depth[..] };
+        (colours, depths, Pitches::of(target).depth)
+    }
+
+    /// The scene ends: a scene that was held back is drawn, and its events are charged. With `layers` somebody asks for
+    /// its depths.
     ///
     /// # Errors
     /// [`Stopped`] as `stop` says; what was drawn until then stays.
@@ -277,6 +357,7 @@ impl Sorted {
         memory: &mut [u32],
         target: &Target,
         level: Option<Level>,
+        layers: bool,
         account: &mut Account,
         stop: &dyn Fn(Clocks) -> Option<Stopped>,
     ) -> Result<(), Stopped> {
@@ -284,6 +365,16 @@ impl Sorted {
             return Ok(());
         }
         let (colours, depths) = surfaces(memory, target);
+        let depths = if target.depth.is_none() && is_held(target) && (layers || self.carried) {
+            let Pitches { depth: pitch, .. } = Pitches::of(target);
+            self.depth.resize(pitch * target.colour.height as usize, 0);
+            if !self.carried {
+                self.depth.fill(target.depth_format.maximum() as i32);
+            }
+            Depths { rows: &mut self.depth, pitch }
+        } else {
+            Depths::of(target, depths)
+        };
         match (target.hidden_surface, is_held(target)) {
             (HiddenSurface::Systolic, true) => {
                 let mut waves = self.waves.take();
@@ -301,7 +392,7 @@ impl Sorted {
             }
             (_, false) => {
                 let (grid, pitch) = (Grid::new(target), Pitches::of(target).bits);
-                let pixels = PixelCounts { spans: self.spans, shaded: ones(&self.late) };
+                let pixels = PixelCounts { spans: self.spans, shaded: ones(&self.late), shading: self.shading() };
                 let won = |column, row| pixels_of_tile(&self.winner, pitch, &grid.pixels(column, row));
                 if let Some(sorts) = &self.sorts {
                     tile::charge(&sorts.finish(target, &self.background, pixels, won), account);
@@ -324,6 +415,7 @@ impl Sorted {
             writes: if depth { pixels } else { 0 },
             colours: if background.colour.is_some() { pixels } else { ones(&self.winner) },
             shaded: ones(&self.late),
+            shading: self.shading(),
         }
     }
 }

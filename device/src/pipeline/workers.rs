@@ -7,7 +7,7 @@ use crate::geometry::line::Line;
 use crate::geometry::triangle::Triangle;
 use crate::hidden::tile::closed_form::Sorts;
 use crate::hidden::z_buffer::band::Scratch;
-use crate::hidden::z_buffer::bins::Bins;
+use crate::hidden::z_buffer::bins::{BinSink, Bins};
 use crate::subpixel::scene::{Item, Taken, Taking};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -41,15 +41,24 @@ pub(super) struct Wanted<'a> {
     pub(super) sorts: Option<&'a mut Sorts>,
     /// The sub-pixel unit.
     pub(super) taken: Option<Taken<'a>>,
+    /// The numbers of primitives are kept.
+    pub(super) numbers: bool,
+}
+
+/// Where the primitives of a share go.
+struct Places<'a> {
+    bins: &'a mut Bins,
+    sorts: Option<&'a mut Sorts>,
+    taken: Option<Taken<'a>>,
 }
 
 /// Bins that take primitives, and the tile unit's sorts where they are wanted.
-struct Share<'a> {
-    bins: &'a mut Bins,
+struct Share<'a, const NUMBERED: bool> {
+    bins: BinSink<'a, NUMBERED>,
     sorts: Option<&'a mut Sorts>,
 }
 
-impl Sink for Share<'_> {
+impl<const NUMBERED: bool> Sink for Share<'_, NUMBERED> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], number: u32) {
         self.bins.triangle(triangle, columns, vertices, number);
@@ -74,7 +83,7 @@ impl Sink for Share<'_> {
         }
     }
 
-    fn masked(&mut self, _vertices: &[ScreenVertex; 3]) {}
+    fn masked(&mut self, _vertices: &[ScreenVertex; 3], _number: u32) {}
 
     #[inline(always)]
     fn full(&self) -> bool {
@@ -106,7 +115,7 @@ impl Workers {
         range: Range<u32>,
         wanted: Wanted<'_>,
     ) -> (u32, GeometryCounts) {
-        let Wanted { mut sorts, mut taken } = wanted;
+        let Wanted { mut sorts, mut taken, numbers } = wanted;
         let count = (range.end - range.start).min(BATCH);
         let used = if self.pool_for(threads, count >= 2 * SHARE).is_some() { threads } else { 1 };
         self.shares.resize_with(used.max(self.shares.len()), Bins::default);
@@ -126,22 +135,32 @@ impl Workers {
         self.taken.resize_with((used - 1).max(self.taken.len()), Vec::new);
         self.taken.iter_mut().for_each(Vec::clear);
         let mut takers = Vec::new();
-        if let Some(Taken { items, draw, masked, translucent }) = &mut taken {
+        if let Some(Taken { items, draw, masked, translucent, without_grid }) = &mut taken {
+            let (draw, masked, translucent, without_grid) = (*draw, *masked, *translucent, *without_grid);
             let all = std::iter::once(&mut **items).chain(&mut self.taken).take(used);
-            takers.extend(all.map(|items| Taken { items, draw: *draw, masked: *masked, translucent: *translucent }));
+            takers.extend(all.map(|items| Taken { items, draw, masked, translucent, without_grid }));
         }
         let mut takers = takers.into_iter();
         let each = count.div_ceil(used as u32);
-        let fill = |(number, (mut share, taken)): (usize, (Share<'_>, Option<Taken<'_>>))| {
+        let fill = |(number, Places { bins, sorts, taken }): (usize, Places<'_>)| {
             let from = range.start + (each * number as u32).min(count);
             let to = range.start + (each * (number as u32 + 1)).min(count);
             let mut counts = GeometryCounts::default();
-            empty(share.bins);
-            let first = assembler.run(from..to, &mut Taking { sink: &mut share, taken }, &mut counts);
+            empty(bins);
+            // Two loops over primitives: the one for draws of interpolated colours alone keeps no numbers.
+            let first = if numbers {
+                let mut share = Share { bins: BinSink::<true>(bins), sorts };
+                assembler.run(from..to, &mut Taking { sink: &mut share, taken }, &mut counts)
+            } else {
+                let mut share = Share { bins: BinSink::<false>(bins), sorts };
+                assembler.run(from..to, &mut Taking { sink: &mut share, taken }, &mut counts)
+            };
             (first, to, counts)
         };
-        let shares =
-            self.shares[..used].iter_mut().map(|bins| (Share { bins, sorts: noted.next() }, takers.next())).enumerate();
+        let shares = self.shares[..used]
+            .iter_mut()
+            .map(|bins| Places { bins, sorts: noted.next(), taken: takers.next() })
+            .enumerate();
         let done: Vec<_> = match &self.pool {
             Some(pool) if used > 1 => {
                 let shares: Vec<_> = shares.collect();

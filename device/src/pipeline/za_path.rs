@@ -19,7 +19,7 @@ pub(super) fn draw(
     let (mut parts, areas) = memory.parts();
     let area = areas.ready(&mut parts, account)?;
     Some(ZaDraw {
-        pixels: *pixels,
+        pixels: pixels.clone(),
         grid: area.grid(),
         background: area.background,
         prediction: target.za.prediction,
@@ -57,6 +57,12 @@ pub(super) fn clear(memory: &mut VideoMemory, target: &Target, clear: &Clear, ac
 pub(super) fn settle(memory: &mut VideoMemory, account: &mut Account) {
     let (mut parts, areas) = memory.parts();
     areas.settle_open(&mut parts, std::iter::once(None), account);
+}
+
+/// Brings the cleared blocks of the scene's frame to memory that have pixels in one of `places`.
+pub(super) fn settle_places(memory: &mut VideoMemory, places: &[Rectangle], account: &mut Account) {
+    let (mut parts, areas) = memory.parts();
+    areas.settle_open(&mut parts, places.iter().copied().map(Some), account);
 }
 
 /// Brings the cleared blocks of the scene's frame to memory in which pixels are about to be written.

@@ -69,7 +69,8 @@ impl PixelProbe {
             };
             let plane = shape.plane(setting.format);
             let depth = plane.stored(plane.value(x, y), below(setting.format));
-            let passed = setting.test.is_none_or(|test| test.passes(depth, stored));
+            let colours = colour_plane(shape, &setting.shade(*primitive));
+            let passed = setting.test.is_none_or(|test| test.passes(depth, stored)) && !colours.is_hole(x, y);
             let written = passed && setting.test.is_some_and(|test| test.write);
             self.records.push(ProbeRecord {
                 primitive: *primitive,
@@ -77,7 +78,7 @@ impl PixelProbe {
                 verdict: kind | (function.code() << 8) | (u32::from(passed) << 16) | (u32::from(written) << 17),
                 depth: depth as u32,
                 depth_before: stored as u32,
-                colour: colour_plane(shape, setting.interpolation).colour(x, y),
+                colour: colours.colour(x, y),
                 draw: self.draw,
                 reserved: 0,
             });

@@ -134,7 +134,7 @@ pub(crate) fn restore(board: &mut Board, state: &State) -> Result<(), CardError>
     blocks.account.clear();
     blocks.bitmap.power_off();
     blocks.scanout.load(state.blanks);
-    blocks.pipeline.power_off();
+    blocks.pipeline.power_off(&mut memory);
     blocks.probe.reset();
     if let Some(target) = processor.target() {
         blocks.pipeline.resume_scene(target);

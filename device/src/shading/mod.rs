@@ -3,13 +3,23 @@
 //! | file | part |
 //! | --- | --- |
 //! | [`plane`] | colour interpolators: flat, affine (integer), perspective-correct (f32) |
+//! | [`parameters`] | what vertices carry beside a colour, as planes |
+//! | [`pixel`] | what follows the interpolated colour: light, texture, fog |
 //! | [`rare`] | the same for lines' ends and for slivers in perspective, pixel by pixel |
 //! | [`resolve`] | runs of visible pixels become frame buffer pixels |
+//! | [`light`] | colours of vertices and pixels under lights |
+//! | [`fog`] | fog and depth cueing |
+//! | [`math`] | powers and directions for both |
 //!
 //! Clocks: 1 for each interpolated pixel (four interpolators side by side); flat colours cost none.
 //! The clocks are those of a card that shades each fragment that passes: 1 for each `colour.writes`
 //! of a Gouraud draw. That the host shades only what stays visible shows in host time alone.
 
+pub mod fog;
+pub mod light;
+pub mod math;
+pub mod parameters;
+pub mod pixel;
 pub mod plane;
 pub mod rare;
 pub mod resolve;

@@ -15,12 +15,15 @@
 //!
 //! All are made from the vertices in (y, x) order, so colours do not depend on the order they came in.
 
+use super::parameters::Parameters;
+use super::pixel::{PixelShading, ShadedPlane};
 use super::rare::{LineColours, PrecisePlane};
 use crate::geometry::ratio::round_ratio;
 use crate::geometry::{CENTRE, PIXEL, ScreenVertex};
+use std::sync::Arc;
 
 /// How a primitive's colour follows the pixel.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum ColourPlane {
     /// One colour; RGBA, R in 7:0.
     Flat(u32),
@@ -32,6 +35,17 @@ pub enum ColourPlane {
     Line(LineColours),
     /// Perspective-correct, where f32 would cancel.
     Precise(PrecisePlane),
+    /// One of the others, and what its colours go through.
+    Shaded(Box<(ColourPlane, ShadedPlane)>),
+}
+
+/// How the pixels of a primitive get their colours.
+#[derive(Clone, Copy, Debug)]
+pub struct Shade<'a> {
+    /// Which colour interpolators are called.
+    pub interpolation: Interpolation,
+    /// What colours go through, and what the primitive's vertices carry for it.
+    pub pixel: Option<(&'a Arc<PixelShading>, &'a Parameters)>,
 }
 
 /// Four integer planes: R, G, B, A.
@@ -93,6 +107,12 @@ impl ColourSource {
             colour: [a.colour, b.colour, c.colour],
             reciprocal_w: [a.reciprocal_w, b.reciprocal_w, c.reciprocal_w],
         }
+    }
+
+    /// The place of the first vertex, u.
+    #[must_use]
+    pub fn first_place(&self) -> [i32; 2] {
+        self.position[0]
     }
 
     /// The colour of a flat primitive: its first vertex's.
@@ -256,6 +276,37 @@ impl ColourPlane {
             ColourPlane::Perspective(plane) => plane.colour(x, y),
             ColourPlane::Line(line) => line.colour(x, y),
             ColourPlane::Precise(plane) => plane.colour(x, y),
+            ColourPlane::Shaded(both) => both.1.colour(both.0.colour(x, y), [x * PIXEL + CENTRE, y * PIXEL + CENTRE]),
+        }
+    }
+
+    /// The plane with what its colours go through, for a primitive with a vertex at `vertex`, in u.
+    #[must_use]
+    pub fn shaded(self, vertex: [i32; 2], shade: &Shade<'_>) -> ColourPlane {
+        match shade.pixel {
+            None => self,
+            Some((shading, vertices)) => {
+                let plane = ShadedPlane::new(shading, vertex.map(|c| c >> 8), vertices);
+                ColourPlane::Shaded(Box::new((self, plane)))
+            }
+        }
+    }
+
+    /// Which of the wanted ones of 16 pixels from (`x`, `y`) on are holes, a bit each.
+    #[inline(always)]
+    pub fn hole_lanes(&self, x: i32, y: i32, wanted: u16) -> u16 {
+        match self {
+            ColourPlane::Shaded(both) => both.1.hole_lanes(x, y, wanted),
+            _ => 0,
+        }
+    }
+
+    /// Whether the pixel (`x`, `y`) is a hole of its texture.
+    #[must_use]
+    pub fn is_hole(&self, x: i32, y: i32) -> bool {
+        match self {
+            ColourPlane::Shaded(both) => both.1.is_hole([x * PIXEL + CENTRE, y * PIXEL + CENTRE]),
+            _ => false,
         }
     }
 }

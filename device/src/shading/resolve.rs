@@ -82,9 +82,10 @@ pub trait Planes {
 }
 
 /// Shades the pixels of `row` that `ids` names; `ids[0]` stands at column `x0` of row `y`. The row
-/// holds whole chunks of [`LANES`] pixels.
+/// holds whole chunks of [`LANES`] pixels. `SHADED`: planes may be [`ColourPlane::Shaded`]; the kernel of draws that call
+/// for interpolated colours alone has no code for more.
 #[inline(always)]
-pub fn resolve_row<S: Simd>(
+pub fn resolve_row<S: Simd, const SHADED: bool>(
     simd: S,
     row: &mut impl PixelRow,
     ids: &[u32],
@@ -104,16 +105,41 @@ pub fn resolve_row<S: Simd>(
             let id = chunk[left.trailing_zeros() as usize % LANES];
             let mine = ids.simd_eq(id);
             left &= !mine.to_bitmask();
-            let shaded = match planes.plane(id) {
-                ColourPlane::Flat(colour) => u32x16::splat(simd, *colour),
-                ColourPlane::Affine(plane) => affine(simd, plane, x as i32, y as i32),
-                ColourPlane::Perspective(plane) => perspective(simd, plane, x as i32, y as i32),
-                ColourPlane::Line(line) => one_by_one(simd, |lane| line.colour(x as i32 + lane, y as i32)),
-                ColourPlane::Precise(plane) => one_by_one(simd, |lane| plane.colour(x as i32 + lane, y as i32)),
+            let plane = planes.plane(id);
+            let shaded = if SHADED {
+                colours_at(simd, plane, x as i32, y as i32, mine.to_bitmask() as u16)
+            } else {
+                interpolated(simd, plane, x as i32, y as i32)
             };
             colours = mine.select(shaded, colours);
         }
         row.put_chunk(simd, x, colours, seen);
+    }
+}
+
+/// Colours of those of the 16 pixels from (`x`, `y`) on that are wanted, a bit each.
+#[inline(always)]
+pub(crate) fn colours_at<S: Simd>(simd: S, plane: &ColourPlane, x: i32, y: i32, wanted: u16) -> u32x16<S> {
+    match plane {
+        ColourPlane::Shaded(both) => {
+            let colours = interpolated(simd, &both.0, x, y).to_array();
+            u32x16::from_slice(simd, &both.1.lanes(colours, x, y, wanted))
+        }
+        plane => interpolated(simd, plane, x, y),
+    }
+}
+
+/// Interpolated colours of 16 pixels from (`x`, `y`) on.
+#[inline(always)]
+fn interpolated<S: Simd>(simd: S, plane: &ColourPlane, x: i32, y: i32) -> u32x16<S> {
+    match plane {
+        ColourPlane::Flat(colour) => u32x16::splat(simd, *colour),
+        ColourPlane::Affine(plane) => affine(simd, plane, x, y),
+        ColourPlane::Perspective(plane) => perspective(simd, plane, x, y),
+        ColourPlane::Line(line) => one_by_one(simd, |lane| line.colour(x + lane, y)),
+        ColourPlane::Precise(plane) => one_by_one(simd, |lane| plane.colour(x + lane, y)),
+        // Never one within another, nor in a draw without shading.
+        ColourPlane::Shaded(_) => u32x16::splat(simd, 0),
     }
 }
 

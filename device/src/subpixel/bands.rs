@@ -1,45 +1,66 @@
 //! Items sorted into bands of lines.
+//!
+//! Duties: for each band what is needed to tell whether an item can be seen there, without the item itself. Inputs from:
+//! [`super::scene`]. Outputs to: [`super::band`].
 
 use super::band::LINES;
 use super::piece::extent;
-use super::scene::{Item, Scene};
+use super::scene::{Item, Kind, Rule, Scene};
+
+/// An item that can touch a band.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Entry {
+    /// Its place in the scene.
+    pub number: u32,
+    /// No depth of it is nearer; where the last is seen the later stands for the nearer.
+    pub nearest: i32,
+    /// First column and row of the target that it can touch, pixels.
+    pub from: [u16; 2],
+    /// First beyond.
+    pub to: [u16; 2],
+}
 
 /// Items by the bands that they can touch.
 #[derive(Debug, Default)]
 pub struct Bands {
-    numbers: Vec<u32>,
+    /// Of all items that can touch the target.
+    all: Vec<Entry>,
+    entries: Vec<Entry>,
     starts: Vec<u32>,
+    next: Vec<u32>,
+    masked: u64,
 }
 
 impl Bands {
     /// Puts the items of a scene into bands.
-    pub fn fill(&mut self, scene: &Scene, height: u32) {
+    pub fn fill(&mut self, scene: &Scene, rule: Rule, height: u32) {
         let count = (height as usize).div_ceil(LINES);
         self.starts.clear();
         self.starts.resize(count + 1, 0);
-        let bands = |item: &Item| {
-            let [[left, first], [right, beyond]] = extent(item, &scene.draws[item.draw as usize]);
-            if left < right && first < beyond {
-                first as usize / LINES..(beyond as usize - 1) / LINES + 1
-            } else {
-                0..0
+        self.all.clear();
+        self.masked = 0;
+        for (number, item) in (0..).zip(&scene.items) {
+            let [from, to] = extent(item, &scene.draws[item.draw as usize]);
+            if from[0] >= to[0] || from[1] >= to[1] {
+                continue;
             }
-        };
-        for item in &scene.items {
-            for band in bands(item) {
-                self.starts[band + 1] += 1;
-            }
+            self.masked += u64::from(item.kind == Kind::Masked);
+            let nearest = if rule == Rule::Last { -(number as i32) } else { nearest(item) };
+            let [from, to] = [from, to].map(|place| place.map(|c| c as u16));
+            let entry = Entry { number, nearest, from, to };
+            bands(&entry).for_each(|band| self.starts[band + 1] += 1);
+            self.all.push(entry);
         }
         for band in 0..count {
             self.starts[band + 1] += self.starts[band];
         }
-        self.numbers.clear();
-        self.numbers.resize(self.starts[count] as usize, 0);
-        let mut next = self.starts.clone();
-        for (number, item) in scene.items.iter().enumerate() {
-            for band in bands(item) {
-                self.numbers[next[band] as usize] = number as u32;
-                next[band] += 1;
+        self.entries.resize(self.starts[count] as usize, Entry::default());
+        self.next.clear();
+        self.next.extend_from_slice(&self.starts);
+        for entry in &self.all {
+            for band in bands(entry) {
+                self.entries[self.next[band] as usize] = *entry;
+                self.next[band] += 1;
             }
         }
     }
@@ -52,7 +73,26 @@ impl Bands {
 
     /// Items of a band, in order of submission.
     #[must_use]
-    pub fn items(&self, band: usize) -> &[u32] {
-        &self.numbers[self.starts[band] as usize..self.starts[band + 1] as usize]
+    pub fn items(&self, band: usize) -> &[Entry] {
+        &self.entries[self.starts[band] as usize..self.starts[band + 1] as usize]
     }
+
+    /// Triangles drawn with masks that can touch the target.
+    #[must_use]
+    pub fn masked(&self) -> u64 {
+        self.masked
+    }
+}
+
+/// The bands that an item can touch.
+#[inline(always)]
+fn bands(entry: &Entry) -> std::ops::Range<usize> {
+    usize::from(entry.from[1]) / LINES..(usize::from(entry.to[1]) - 1) / LINES + 1
+}
+
+/// The nearest depth of an item's vertices.
+#[inline(always)]
+fn nearest(item: &Item) -> i32 {
+    let [a, b, c] = &item.vertices;
+    a.z.min(b.z).min(c.z) as i32
 }

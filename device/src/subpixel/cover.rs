@@ -1,37 +1,27 @@
-//! What pieces cover on the lines of a band: edges walked over rows of samples, 16 at a time.
+//! What a piece covers on the lines of a band: edges walked over rows of samples, 16 at a time.
+//!
+//! A triangle that is drawn with masks is walked on rows of samples as on rows of pixels. On each row of pixels it
+//! covers, from left to right, some pixels in part, then some wholly (a *span*), then some in part. Those in part
+//! become fragments at once, unless they are hidden already.
+//!
+//! Inputs from: [`super::piece`]. Outputs to: [`super::lists`], [`super::hide`]. Clocks: those of masks are counted when
+//! it is known what is left ([`super::band`]).
 
-use super::band::{Input, Work, bits_of};
-use super::piece::Cover;
-use crate::geometry::plane::Axis;
+use super::band::{Input, Work};
+use super::hide::Span;
+use super::lists::Fragment;
+use super::piece::{Cover, Piece};
+use super::scene::Rule;
+use crate::geometry::line::Line;
+use crate::geometry::plane::{Axis, below};
 use crate::geometry::triangle::Triangle;
+use crate::geometry::{PIXEL, ScreenVertex};
 use crate::hidden::z_buffer::kernel::{LANE, LANES, Steps};
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, i32x16, u32x16};
+use fearless_simd::{Simd, i32x16, u8x64, u32x16};
 
 /// Columns of samples where an empty row begins; beyond every target.
 const EMPTY: i32 = 1 << 24;
-
-/// A run of pixels on one line that a piece covers wholly.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Span {
-    pub(super) piece: u32,
-    /// Line of the band.
-    pub(super) line: u16,
-    /// First column, first beyond.
-    pub(super) columns: [u16; 2],
-}
-
-/// What a triangle covers on one line: pixels in part on both sides of a span.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
-    pub(super) piece: u32,
-    /// Line of the band.
-    pub(super) line: u16,
-    /// First column, first of the span, first beyond the span, first beyond.
-    pub(super) columns: [u16; 4],
-    /// First column whose centre is covered, first beyond.
-    pub(super) centres: [u16; 2],
-}
 
 /// The edges of a triangle, walked on [`LANES`] rows at a time.
 struct Walks<S: Simd> {
@@ -68,42 +58,90 @@ impl<S: Simd> Walks<S> {
     }
 }
 
+/// The pixels whose centres a triangle covers, where that must be known.
+struct Centres<'a> {
+    vertices: &'a [ScreenVertex; 3],
+    /// First row that may be asked for.
+    top: i32,
+    /// Set up when they are first asked for.
+    outline: Option<Option<Triangle>>,
+}
+
+impl Centres<'_> {
+    /// Columns on row `y`, from the first to the first beyond, inside `columns`.
+    fn on(&mut self, y: i32, [left, right]: [i32; 2]) -> [i32; 2] {
+        let grid = ([PIXEL.ilog2(); 2], self.top);
+        match self.outline.get_or_insert_with(|| Triangle::outlines(self.vertices, [grid])[0]) {
+            Some(t) if (t.rows[0]..t.rows[2]).contains(&y) => {
+                let [from, to] = t.span(y);
+                [from.max(left), to.min(right)]
+            }
+            _ => [0; 2],
+        }
+    }
+}
+
+/// Whether a triangle may cover a pixel's centre on row `y` of pixels and none of the pixel's samples.
+///
+/// The centres lie half-way between two rows of samples. Where no vertex lies between these, both sides of the triangle
+/// are straight there, and what it covers on the centres' row is the mean of what it covers on the two. A centre whose
+/// four samples are not covered then has a row that is too narrow to meet one, or one row ends before it and the other
+/// begins behind it.
+#[inline(always)]
+fn may_miss<const R: usize>(t: &Triangle, y: i32, froms: &[i32; R], tos: &[i32; R]) -> bool {
+    let (above, below) = (R / 2 - 1, R / 2);
+    let row = y * R as i32 + below as i32;
+    let narrow = |k: usize| tos[k] - froms[k] < 2;
+    let apart = tos[above] <= froms[below] || tos[below] <= froms[above];
+    let meets = t.rows[0] < row && row < t.rows[2];
+    t.rows.contains(&row) || (meets && (narrow(above) || narrow(below) || apart))
+}
+
 impl Work {
-    /// What all pieces cover on their lines.
+    /// Everything that a piece covers inside `area`: fragments of the pixels that it covers in part, spans of those that
+    /// it covers wholly.
     #[inline(always)]
-    pub(super) fn cover<S: Simd, const C: usize, const R: usize>(&mut self, simd: S, input: &Input<'_>) {
-        for number in 0..self.pieces.len() {
-            let (cover, area) = self.covers[number];
-            let [[left, first], [right, beyond]] = area;
-            if left >= right || first >= beyond {
-                continue;
+    pub(super) fn cover<S: Simd, const C: usize, const R: usize>(
+        &mut self,
+        simd: S,
+        input: &Input<'_>,
+        (piece, cover): (Piece, Cover),
+        area: [[i32; 2]; 2],
+    ) {
+        let [[left, first], [right, beyond]] = area;
+        let steps = Steps::new(simd, piece.row_step());
+        self.pieces.push(piece);
+        let vertices = &input.scene.items[self.pieces[self.pieces.len() - 1].item as usize].vertices;
+        match cover {
+            Cover::Nothing => {}
+            Cover::Samples(Some(outline)) => {
+                self.samples::<S, C, R>(simd, input, &steps, &outline, vertices, area);
             }
-            match cover {
-                Cover::Nothing => {}
-                Cover::Samples(outlines) => {
-                    self.samples::<S, C, R>(simd, input, number, &outlines, area);
+            Cover::Samples(None) if self.pieces.last().is_some_and(|piece| !piece.drawn) => {}
+            Cover::Samples(None) => {
+                let mut centres = Centres { vertices, top: input.top, outline: None };
+                for y in first..beyond {
+                    let centre = centres.on(y, [left, right]);
+                    self.partly::<S, C, R>(simd, input, y, (&[EMPTY; R], &[-EMPTY; R]), centre, [centre, [0; 2]]);
                 }
-                Cover::Centres(triangle) => {
-                    for y in first.max(triangle.rows[0])..beyond.min(triangle.rows[2]) {
-                        let [from, to] = triangle.span(y);
-                        self.span(input, number, y, [from.max(left), to.min(right)]);
-                    }
-                }
-                Cover::Line(line) => {
-                    for y in first..beyond {
-                        if line.axis == Axis::Y && !(line.steps[0]..line.steps[1]).contains(&y) {
-                            continue;
-                        }
-                        let [from, to] = line.columns_on_row(y, [left, right]);
-                        self.span(input, number, y, [from.max(left), to.min(right)]);
-                    }
-                }
-                Cover::Pixel([x, y]) if (left..right).contains(&x) && (first..beyond).contains(&y) => {
-                    self.span(input, number, y, [x, x + 1]);
-                }
-                Cover::Pixel(_) => {}
-                Cover::All => (first..beyond).for_each(|y| self.span(input, number, y, [left, right])),
             }
+            Cover::Centres(triangle) => {
+                for y in first.max(triangle.rows[0])..beyond.min(triangle.rows[2]) {
+                    let [from, to] = triangle.span(y);
+                    self.span(simd, input, &steps, y, [from.max(left), to.min(right)]);
+                }
+            }
+            Cover::Line(line) => {
+                for y in first..beyond {
+                    let [from, to] = on_row(&line, y, [left, right]);
+                    self.span(simd, input, &steps, y, [from.max(left), to.min(right)]);
+                }
+            }
+            Cover::Pixel([x, y]) if (left..right).contains(&x) && (first..beyond).contains(&y) => {
+                self.span(simd, input, &steps, y, [x, x + 1]);
+            }
+            Cover::Pixel(_) => {}
+            Cover::All => (first..beyond).for_each(|y| self.span(simd, input, &steps, y, [left, right])),
         }
     }
 
@@ -113,109 +151,166 @@ impl Work {
         &mut self,
         simd: S,
         input: &Input<'_>,
-        number: usize,
-        [t, centres]: &[Triangle; 2],
+        steps: &Steps<S>,
+        t: &Triangle,
+        vertices: &[ScreenVertex; 3],
         [[left, first], [right, beyond]]: [[i32; 2]; 2],
     ) {
         let (columns, rows) = (C as i32, R as i32);
+        let shift = C.ilog2();
         let walks = Walks::new(simd, t);
-        let centres = Walks::new(simd, centres).spans(simd, centres, first, [left, right]);
+        let drawn = self.pieces.last().is_some_and(|piece| piece.drawn);
+        let mut centres = Centres { vertices, top: input.top, outline: None };
         let mut y = first;
         while y < beyond {
             let [froms, tos] = walks.spans(simd, t, y * rows, [left * columns, right * columns]);
             for (froms, tos) in froms.as_chunks::<R>().0.iter().zip(tos.as_chunks::<R>().0) {
-                if y < beyond {
-                    let place = (y - first) as usize % LANES;
-                    let centre = [centres[0][place], centres[1][place]];
-                    self.row::<C, R>(input, number, y, froms, tos, centre);
+                if y >= beyond {
+                    break;
                 }
+                let (mut least, mut greatest) = (froms[0], tos[0]);
+                for k in 1..R {
+                    (least, greatest) = (least.min(froms[k]), greatest.max(tos[k]));
+                }
+                let mut met = [least >> shift, (greatest + columns - 1) >> shift];
+                // The left border is convex and the right one concave: what all rows cover, the first and the last do.
+                let [inner_from, inner_to] = [froms[0].max(froms[R - 1]), tos[0].min(tos[R - 1])];
+                let whole = [(inner_from + columns - 1) >> shift, inner_to >> shift];
+                let mut centre = [0; 2];
+                if drawn && may_miss(t, y, froms, tos) {
+                    centre = centres.on(y, [left, right]);
+                    if centre[0] < centre[1] {
+                        met = [met[0].min(centre[0]), met[1].max(centre[1])];
+                    }
+                }
+                let mut parts = [met, [0; 2]];
+                if whole[0] < whole[1] {
+                    self.span(simd, input, steps, y, whole);
+                    parts = [[met[0], whole[0]], [whole[1], met[1]]];
+                }
+                self.partly::<S, C, R>(simd, input, y, (froms, tos), centre, parts);
                 y += 1;
             }
         }
     }
 
-    /// A triangle on the rows of samples of one row of pixels; of those whose centres it covers, `centre`, it may cover
-    /// no sample.
+    /// Fragments of the last piece in the pixels `parts` of row `y`, none of which it covers wholly, unless they are
+    /// hidden: where it covers samples, or the centre, that of columns `centre`.
     #[inline(always)]
-    fn row<const C: usize, const R: usize>(
+    fn partly<S: Simd, const C: usize, const R: usize>(
         &mut self,
+        simd: S,
         input: &Input<'_>,
-        number: usize,
         y: i32,
-        froms: &[i32; R],
-        tos: &[i32; R],
+        (froms, tos): (&[i32; R], &[i32; R]),
         centre: [i32; 2],
+        parts: [[i32; 2]; 2],
     ) {
-        let columns = C as i32;
-        let shift = C.ilog2();
-        // The left border is convex and the right one concave: what all rows cover, the first and the last do.
-        let [inner_from, inner_to] = [froms[0].max(froms[R - 1]), tos[0].min(tos[R - 1])];
-        let (mut least, mut greatest) = (froms[0], tos[0]);
-        for k in 1..R {
-            (least, greatest) = (least.min(froms[k]), greatest.max(tos[k]));
-        }
-        let (mut first, mut beyond) = (least >> shift, (greatest + columns - 1) >> shift);
-        if first >= beyond {
-            (first, beyond) = (centre[0], centre[1]);
-            if first >= beyond {
+        let line = (y - input.top) as usize;
+        let number = self.pieces.len() - 1;
+        let below = below(input.setting.format);
+        let (start, words) = (line * input.pitch(), line * input.words());
+        let full = input.setting.grid.full();
+        for [from, to] in parts {
+            if from >= to {
+                continue;
+            }
+            let (first, beyond) = (from as usize, to as usize);
+            if !self.lists.has_room(beyond - first) {
                 return;
             }
-        }
-        let mut whole = [(inner_from + columns - 1) >> shift, inner_to >> shift];
-        if whole[0] < whole[1] {
-            self.span(input, number, y, whole);
-        } else {
-            whole = [beyond; 2];
-        }
-        if centre[0] < centre[1] {
-            (first, beyond) = (first.min(centre[0]), beyond.max(centre[1]));
-            if whole[0] == whole[1] {
-                whole = [beyond; 2];
+            for chunk in first / LANES..(beyond - 1) / LANES + 1 {
+                self.open(simd, input, line, chunk);
+            }
+            let piece = &self.pieces[number];
+            let (minimum, maximum) = (i64::from(piece.plane.minimum), i64::from(piece.plane.maximum));
+            let stored = |value: i64| (value >> below).max(minimum).min(maximum) as i32;
+            let [value, value_far] = piece.row_values(from, y);
+            let (deep, step) = (value_far.wrapping_sub(value), piece.row_step());
+            let hides = !piece.layer && input.setting.rule != Rule::InOrder;
+            let mut value = value.wrapping_sub(step);
+            for base in (first..beyond).step_by(REACH) {
+                let rows = Rows::new::<C, R>(simd, froms, tos, (base * C) as i32);
+                for x in base..beyond.min(base + REACH) {
+                    value = value.wrapping_add(step);
+                    let (near, limit) = (stored(value), &mut self.far[start + x]);
+                    if near > *limit {
+                        continue;
+                    }
+                    let mask = rows.mask((x - base) * C);
+                    if mask == 0 && !(centre[0]..centre[1]).contains(&(x as i32)) {
+                        continue;
+                    }
+                    let fragment = Fragment::new(mask, number as u32, [near, stored(value.wrapping_add(deep))]);
+                    if hides {
+                        self.lists.put_opaque(start + x, fragment, full, limit);
+                    } else {
+                        self.lists.put(start + x, fragment);
+                    }
+                    self.active[words + x / 64] |= 1 << (x % 64);
+                }
             }
         }
-        let line = (y - input.top) as usize;
-        self.rows.push(Row {
-            piece: number as u32,
-            line: line as u16,
-            columns: [first, whole[0], whole[1], beyond].map(|x| x as u16),
-            centres: if centre[0] < centre[1] { centre.map(|x| x as u16) } else { [0, 0] },
-        });
-        self.edges.extend_from_slice(froms);
-        self.edges.extend_from_slice(tos);
-        let words = &mut self.part[line * input.chunk_words()..][..input.chunk_words()];
-        mark(words, first, whole[0]);
-        mark(words, whole[1], beyond);
     }
 
-    /// Pixels that a piece covers wholly.
+    /// Pixels that the last piece covers wholly.
     #[inline(always)]
-    fn span(&mut self, input: &Input<'_>, number: usize, y: i32, [from, to]: [i32; 2]) {
-        if from >= to {
-            return;
-        }
-        let line = (y - input.top) as usize;
-        self.spans.push(Span { piece: number as u32, line: line as u16, columns: [from as u16, to as u16] });
-        let piece = &self.pieces[number];
-        // Layers are looked for everywhere; a second span in a chunk may be hidden or hide the first.
-        let always = piece.layer || input.undecided(piece);
-        let words = line * input.chunk_words();
-        let chunks = [from as usize / LANES, (to as usize - 1) / LANES];
-        for word in chunks[0] / 64..chunks[1] / 64 + 1 {
-            let bits = bits_of(word, chunks[0], chunks[1] + 1);
-            let place = words + word;
-            self.need[place] |= bits & (self.once[place] | if always { u64::MAX } else { 0 });
-            self.once[place] |= bits;
+    fn span<S: Simd>(&mut self, simd: S, input: &Input<'_>, steps: &Steps<S>, y: i32, [from, to]: [i32; 2]) {
+        if from < to {
+            let line = (y - input.top) as u16;
+            let span = Span { piece: self.pieces.len() as u32 - 1, line, columns: [from as u16, to as u16] };
+            if input.setting.rule == Rule::InOrder || self.hide(simd, input, steps, &span) {
+                self.spans.push(span);
+            }
         }
     }
 }
 
-/// Marks the chunks of some columns.
-#[inline(always)]
-fn mark(words: &mut [u64], from: i32, to: i32) {
-    if from < to {
-        let chunks = [from as usize / LANES, (to as usize - 1) / LANES];
-        for (word, bits) in words.iter_mut().enumerate().take(chunks[1] / 64 + 1).skip(chunks[0] / 64) {
-            *bits |= bits_of(word, chunks[0], chunks[1] + 1);
-        }
+/// Columns of a line on row `y`; from more to less if there are none.
+fn on_row(line: &Line, y: i32, columns: [i32; 2]) -> [i32; 2] {
+    if line.axis == Axis::Y && !(line.steps[0]..line.steps[1]).contains(&y) {
+        return [0; 2];
+    }
+    line.columns_on_row(y, columns)
+}
+
+/// Pixels that [`Rows`] reach: their columns of samples count to less than 255.
+const REACH: usize = 31;
+
+/// Columns of samples that rows of samples begin and end with, a lane for each sample of a pixel: lane k is bit k of a
+/// mask.
+struct Rows<S: Simd> {
+    froms: u8x64<S>,
+    tos: u8x64<S>,
+    /// Columns of the samples of the first pixel.
+    columns: u8x64<S>,
+}
+
+impl<S: Simd> Rows<S> {
+    /// Of [`REACH`] pixels, the first of which begins with column `x`. Lanes that are no samples cover nothing.
+    #[inline(always)]
+    fn new<const C: usize, const R: usize>(simd: S, froms: &[i32; R], tos: &[i32; R], x: i32) -> Self {
+        let lanes = |columns: &[i32; R], rest: u64| {
+            let mut words = [rest; 8];
+            for (row, column) in columns.iter().rev().enumerate() {
+                let column = (column - x).clamp(0, 255) as u64;
+                if C == 8 {
+                    words[row] = column * 0x0101_0101_0101_0101;
+                } else {
+                    let shift = 32 * (row % 2);
+                    words[row / 2] = (words[row / 2] & !(0xFFFF_FFFF << shift)) | ((column * 0x0101_0101) << shift);
+                }
+            }
+            u8x64::from_slice(simd, bytemuck::cast_slice(&words.map(u64::to_le)))
+        };
+        let columns: [u8; 64] = std::array::from_fn(|lane| (C - 1 - lane % C) as u8);
+        Rows { froms: lanes(froms, u64::MAX), tos: lanes(tos, 0), columns: u8x64::from_slice(simd, &columns) }
+    }
+
+    /// Samples of the pixel whose columns begin so many after the first one's.
+    #[inline(always)]
+    fn mask(&self, column: usize) -> u64 {
+        let columns = self.columns + column as u8;
+        (self.froms.simd_le(columns) & self.tos.simd_gt(columns)).to_bitmask()
     }
 }

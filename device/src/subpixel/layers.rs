@@ -9,7 +9,7 @@ use super::gamma::Space;
 use super::parts::{Depths, Paint, Part, Resolver};
 use super::pixel::{Pixel, samples};
 use super::shader::Shader;
-use zga_abi::format::SubpixelDepth;
+use zga_abi::format::{BlendMode, SubpixelDepth};
 
 /// A translucent fragment that waits.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +17,7 @@ pub(super) struct Layer {
     pub(super) mask: u64,
     pub(super) fragment: usize,
     pub(super) colour: u32,
+    pub(super) mode: BlendMode,
 }
 
 /// Composed samples.
@@ -28,13 +29,24 @@ pub(super) struct Class {
 }
 
 impl Layer {
-    /// The layer over what is below it, source alpha over.
+    /// The layer over what is below it.
     #[inline(always)]
     fn over(&self, space: Space, below: [f64; 4]) -> [f64; 4] {
         let alpha = f64::from(self.colour >> 24) / 255.0;
         // The coverage behind a layer: what is not let through grows toward 255.
         let source = space.of(self.colour | 0xFF00_0000);
-        [0, 1, 2, 3].map(|c| below[c] * (1.0 - alpha) + source[c] * alpha)
+        let white = space.of(u32::MAX);
+        let blended = |c: usize| match self.mode {
+            BlendMode::Alpha => below[c] * (1.0 - alpha) + source[c] * alpha,
+            BlendMode::Add => (below[c] + source[c] * alpha).min(white[c]),
+            BlendMode::Multiply => below[c] * (1.0 - alpha * (1.0 - source[c] / white[c])),
+            BlendMode::Premultiplied => (source[c] + below[c] * (1.0 - alpha)).min(white[c]),
+        };
+        let coverage = match self.mode {
+            BlendMode::Alpha | BlendMode::Premultiplied => below[3] * (1.0 - alpha) + white[3] * alpha,
+            BlendMode::Add | BlendMode::Multiply => below[3],
+        };
+        [blended(0), blended(1), blended(2), coverage]
     }
 }
 

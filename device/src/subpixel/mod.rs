@@ -3,9 +3,10 @@
 //! Source: JP 2569952 B2 (1990).
 //!
 //! The hidden-surface path draws a scene with a grid as ever, one sample at each pixel's centre. At END_SCENE this unit
-//! overwrites the pixels that are *active*: those where, of all that no opaque fragment covering the whole pixel hides,
-//! something covers a part, or is translucent, or two cover the whole. All others keep what the path drew, which is
-//! the same. So every path gives one picture, and a pixel inside a triangle costs nothing here.
+//! overwrites the pixels that are *active*. Opaque fragments that together cover every sample of a pixel hide what lies
+//! behind the farthest of them; a pixel is active if more than one fragment is left, unless all that are have one colour
+//! and those that hide the rest cover the centre too. All other pixels keep what the path drew, which is the same. So
+//! every path gives one picture, and a pixel inside a triangle costs nothing here.
 //!
 //! | file | part |
 //! | --- | --- |
@@ -13,10 +14,11 @@
 //! | [`scene`] | what is drawn, taken while the path draws it |
 //! | [`piece`] | an item set up for a band of lines: edges, depth bounds, depths at samples |
 //! | `bands` | items sorted into bands of lines |
-//! | [`band`] | masks of a band, active pixels and their lists of fragments |
-//! | `cover` | what is covered on its lines |
-//! | `lists` | fragments before they are sorted by pixel, in no more memory than the pool |
-//! | `hide` | what of it is hidden by what covers whole pixels |
+//! | [`band`] | a band from items to resolved pixels, from the nearest item to the farthest |
+//! | `cover` | what an item covers on its lines: masks, spans |
+//! | `hide` | what is hidden already, and by what covers whole pixels |
+//! | `lists` | fragments by pixel, in bounded memory |
+//! | `left` | what is left of them, and which pixels are active |
 //! | [`specification`] | the same by definition, pixel by pixel |
 //! | [`search`](mod@search) | the nearest or the farthest sub-pixel of a mask |
 //! | [`search_clocked`] | the same as registers and clocks |
@@ -29,9 +31,10 @@
 //! | [`map`] | an instrument: which pixels were taken up, and why |
 //!
 //! # Clocks
-//! 1 a mask (one is made for each pixel that a triangle covers in part, or of which it covers the centre alone, and in which
-//! nothing that covers the whole pixel hides it, and one for each triangle, in which its edges begin), 1 a band of samples searched, 1 a depth evaluated, 1 a merge, 1 a fragment packed, 1 an active pixel
-//! averaged and written; a colour is 1 clock of the shading unit. Lists are written while masks are made.
+//! 1 a mask (one for each fragment of an active pixel that covers a part of it, or its centre alone, and one for each
+//! triangle, in which its edges begin), 1 a band of samples searched, 1 a depth evaluated, 1 a merge, 1 a fragment packed,
+//! 1 an active pixel averaged and written; a colour is 1 clock of the shading unit. Lists are written while masks are
+//! made.
 //!
 //! # Memory
 //! The lists of one line of pixels lie in a pool of SUBPIXEL_POOL fragments of [`FRAGMENT_BYTES`] bytes. Pixels get
@@ -45,6 +48,7 @@ pub mod gamma;
 pub mod grid;
 mod hide;
 mod layers;
+mod left;
 mod lists;
 pub mod map;
 mod parts;
@@ -60,6 +64,7 @@ mod tests;
 pub mod unit;
 
 use crate::probe::account::{Account, Clocks};
+use crate::shading::pixel::ShadingCounts;
 use grid::Grid;
 use scene::Rule;
 use zga_abi::Counter;
@@ -140,8 +145,10 @@ pub struct Counts {
     pub degraded: u64,
     /// Most fragments of a line.
     pub most: u64,
-    /// Colours interpolated.
+    /// Pixels shaded: colours interpolated, or taken through more.
     pub shaded: u64,
+    /// What they cost beyond interpolated colours.
+    pub shading: ShadingCounts,
 }
 
 impl crate::pipeline::bands::Counts for Counts {
@@ -158,6 +165,7 @@ impl crate::pipeline::bands::Counts for Counts {
             degraded: self.degraded + other.degraded,
             most: self.most.max(other.most),
             shaded: self.shaded + other.shaded,
+            shading: self.shading.plus(other.shading),
         }
     }
 }
@@ -186,4 +194,5 @@ pub fn charge(counts: &Counts, account: &mut Account) {
     account.charge(Counter::CyclesSubpixel, counts.clocks());
     account.add(Counter::ShadingPixels, counts.shaded);
     account.charge(Counter::CyclesShading, Clocks(counts.shaded));
+    counts.shading.charge(account);
 }

@@ -3,8 +3,9 @@
 //! What each test, range and merge means is told in [`super::pixel`].
 
 use super::layers::{Class, Layer};
+use super::lists::Fragment;
 use super::piece::Piece;
-use super::pixel::{Fragment, Pixel, samples};
+use super::pixel::{Pixel, samples};
 use super::scene::{ItemDraw, Kind, Rule};
 use super::search::{self, DepthRange, Extreme};
 use super::shader::Shader;

@@ -6,21 +6,21 @@
 
 use super::Setting;
 use super::grid::Offset;
-use super::scene::{Item, ItemDraw, Kind, Rule, greatest_alpha, least_alpha};
+use super::scene::{Item, ItemDraw, Kind, Rule};
 use crate::geometry::line::Line;
 use crate::geometry::plane::{DepthPlane, WidePlane, below};
 use crate::geometry::triangle::{Triangle, doubled_area};
-use crate::geometry::{CENTRE, PIXEL};
+use crate::geometry::{CENTRE, PIXEL, ScreenVertex};
 use crate::hidden::z_buffer::specification::covers_place;
-use crate::shading::plane::{ColourPlane, ColourSource, Interpolation};
+use crate::shading::plane::{ColourPlane, ColourSource, Interpolation, Shade};
 use zga_abi::format::SubpixelDepth;
 
 /// What a piece covers.
 #[derive(Clone, Copy, Debug)]
 pub enum Cover {
-    /// The samples inside edges: walked on rows of samples, and on rows of pixels. A triangle that covers a pixel's
-    /// centre and none of its samples makes the pixel active too: the path has drawn it there.
-    Samples([Triangle; 2]),
+    /// The samples inside edges, walked on rows of samples; `None` if no row or no column of samples meets them. A
+    /// triangle that covers a pixel's centre and none of its samples is a fragment too: the path has drawn it there.
+    Samples(Option<Triangle>),
     /// Pixels whose centres are inside edges, on rows of pixels.
     Centres(Triangle),
     /// The pixels of a line.
@@ -53,8 +53,12 @@ pub struct Piece {
     pub item: u32,
     /// Place of its draw.
     pub draw: u32,
-    /// It may be translucent somewhere: it hides nothing.
+    /// It may be translucent or have holes somewhere: it hides nothing.
     pub layer: bool,
+    /// The path draws it too.
+    pub drawn: bool,
+    /// The one colour that it has all over; RGBA, R in 7:0. `None` where its colour may change.
+    pub plain: Option<u32>,
     /// Its item's kind.
     pub kind: Kind,
     /// Depth.
@@ -82,7 +86,9 @@ impl Piece {
         let mut piece = Piece {
             item: number,
             draw: item.draw,
-            layer: draw.blend && least_alpha(v, draw.interpolation) != 255,
+            layer: !draw.is_opaque(v) || draw.has_holes(),
+            drawn: draw.is_opaque(v),
+            plain: plain(v, draw),
             kind: item.kind,
             plane: DepthPlane::default(),
             reach: 0,
@@ -90,7 +96,7 @@ impl Piece {
             below,
             source: ColourSource::new(v),
         };
-        if draw.blend && greatest_alpha(v, draw.interpolation) == 0 {
+        if draw.is_nothing(v) {
             return (piece, Cover::Nothing);
         }
         let mut cover = Cover::Nothing;
@@ -126,16 +132,15 @@ impl Piece {
     #[inline(always)]
     fn set_up(&mut self, setting: &Setting, item: &Item, draw: &ItemDraw, top: i32) -> Cover {
         let v = &item.vertices;
-        let rows = setting.grid.rows() as i32;
-        let [samples, centres] = Triangle::outlines(v, [(setting.pitch, top * rows), ([PIXEL.ilog2(); 2], top)]);
-        if samples.is_none() && centres.is_none() {
+        let area = doubled_area(&v[0], &v[1], &v[2]);
+        if area == 0 {
             return Cover::Nothing;
         }
-        let cover = Cover::Samples([samples.unwrap_or_default(), centres.unwrap_or_default()]);
+        let [samples] = Triangle::outlines(v, [(setting.pitch, top * setting.grid.rows() as i32)]);
+        let cover = Cover::Samples(samples);
         if draw.test.is_none() {
             return cover;
         }
-        let area = doubled_area(&v[0], &v[1], &v[2]);
         let inverse = 1.0 / area as f64;
         let (plane, steep) = DepthPlane::triangle(v, area, inverse, setting.format);
         self.plane = plane;
@@ -262,11 +267,12 @@ impl Piece {
 
     /// The plane that colours at pixel centres come from.
     #[must_use]
-    pub fn colours(&self, interpolation: Interpolation) -> ColourPlane {
-        match self.kind {
-            Kind::Line | Kind::Point => ColourPlane::line(&self.source, interpolation),
-            _ => ColourPlane::triangle(&self.source, interpolation),
-        }
+    pub fn colours(&self, shade: &Shade<'_>) -> ColourPlane {
+        let plane = match self.kind {
+            Kind::Line | Kind::Point => ColourPlane::line(&self.source, shade.interpolation),
+            _ => ColourPlane::triangle(&self.source, shade.interpolation),
+        };
+        plane.shaded(self.source.first_place(), shade)
     }
 
     /// Samples of pixel (`x`, `y`) that a triangle drawn with masks covers, by edge functions and the top-left rule:
@@ -279,6 +285,14 @@ impl Piece {
         };
         (0..setting.grid.samples()).filter(|&sample| covers(sample)).map(|sample| setting.grid.sample_bit(sample)).sum()
     }
+}
+
+/// The one colour of a primitive that has one, wherever it is shaded.
+#[inline(always)]
+fn plain(v: &[ScreenVertex; 3], draw: &ItemDraw) -> Option<u32> {
+    let [a, b, c] = [v[0].colour, v[1].colour, v[2].colour];
+    let one = draw.interpolation == Interpolation::Flat || (a == b && a == c);
+    (one && draw.shading.is_none()).then_some(a)
 }
 
 /// Rows and columns that an item can touch, `[[first x, first y], [beyond x, beyond y]]`, cut to its scissor.

@@ -25,22 +25,13 @@
 use super::band::Work;
 use super::gamma::Space;
 use super::layers::Layer;
+pub(super) use super::lists::Fragment;
 use super::map::Reason;
 use super::parts::Depths;
 use super::piece::Piece;
-use super::scene::{ItemDraw, Kind, Rule};
+use super::scene::{ItemDraw, Kind};
 use super::{Counts, Setting, search};
-
-/// What covers a part of a pixel: 16 bytes of the pool.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Fragment {
-    /// Samples.
-    pub mask: u64,
-    /// Pixel of the band: its bit in [`Work::active`].
-    pub at: u32,
-    /// Its piece's place among those of the band: also the order of submission.
-    pub piece: u32,
-}
+use zga_abi::format::BlendMode;
 
 /// A pixel, and all that its fragments are looked up in.
 pub(super) struct Pixel<'a> {
@@ -93,19 +84,13 @@ impl Work {
         setting: &Setting,
         space: Space,
         draws: &[ItemDraw],
-        fragments: &mut [Fragment],
+        fragments: &[Fragment],
         place: [i32; 2],
         base: (u32, i32),
         counts: &mut Counts,
     ) -> (u32, Reason) {
         let full = setting.grid.full();
-        let mut apart = disjoint(fragments);
-        let mut left = fragments.len();
-        if !apart && setting.rule != Rule::InOrder {
-            left = drop_hidden(&self.pieces, fragments, full, place);
-            apart = disjoint(&fragments[..left]);
-        }
-        let fragments = &fragments[..left];
+        let apart = disjoint(fragments);
         let pixel = Pixel { setting, space, draws, pieces: &self.pieces, fragments, place };
         let resolver = &mut self.resolver;
         if apart && let Some(colour) = resolver.mosaic(&pixel, base, &mut self.shader, counts) {
@@ -123,14 +108,19 @@ impl Work {
             if fragment.mask != full {
                 reason = reason.max_edge();
             }
-            if piece.layer {
+            // One at the centre alone has no sample: it is not seen, hole or not.
+            if draw.has_holes() && (fragment.mask == 0 || self.shader.is_hole(&pixel, number, counts)) {
+                continue;
+            }
+            if piece.layer && draw.blend {
                 let colour = self.shader.colour(&pixel, number, counts);
                 match colour >> 24 {
-                    0 => continue,
-                    255 => {}
+                    0 if draw.mode != BlendMode::Premultiplied => continue,
+                    alpha if draw.hides(alpha) => {}
                     _ => {
                         reason = Reason::Layer;
-                        resolver.layers.push(Layer { mask: fragment.mask, fragment: number, colour });
+                        let mode = draw.mode;
+                        resolver.layers.push(Layer { mask: fragment.mask, fragment: number, colour, mode });
                         continue;
                     }
                 }
@@ -152,49 +142,6 @@ fn disjoint(fragments: &[Fragment]) -> bool {
         all |= fragment.mask;
     }
     shared == 0
-}
-
-/// Fragments whose order is looked for at once, at most.
-const FEW: usize = 24;
-
-/// Drops fragments that lie behind others which together cover the whole pixel, where the nearest is seen: the front of
-/// a surface hides its back at its edges too. Those that are left stand in front, in order; returns how many.
-fn drop_hidden(pieces: &[Piece], fragments: &mut [Fragment], full: u64, [x, y]: [i32; 2]) -> usize {
-    let count = fragments.len();
-    if count > FEW {
-        return count;
-    }
-    let mut bounds = [[0; 2]; FEW];
-    // Opaque ones by their farthest depth: as few as cover the pixel say how far is seen.
-    let mut order = [(0, 0_u64); FEW];
-    let mut opaque = 0;
-    for (fragment, bounds) in fragments.iter().zip(&mut bounds) {
-        let piece = &pieces[fragment.piece as usize];
-        *bounds = piece.bounds(x, y);
-        if !piece.layer {
-            let mut place = opaque;
-            while place > 0 && order[place - 1].0 > bounds[1] {
-                order[place] = order[place - 1];
-                place -= 1;
-            }
-            order[place] = (bounds[1], fragment.mask);
-            opaque += 1;
-        }
-    }
-    let mut union = 0;
-    let limit = order[..opaque].iter().find_map(|&(far, mask)| {
-        union |= mask;
-        (union == full).then_some(far)
-    });
-    let Some(limit) = limit else {
-        return count;
-    };
-    let mut left = 0;
-    for number in 0..count {
-        fragments[left] = fragments[number];
-        left += usize::from(bounds[number][0] <= limit);
-    }
-    left
 }
 
 impl Reason {

@@ -2,21 +2,25 @@
 //!
 //! Duties: takes what is assembled while the hidden-surface path draws it; knows from which rule the order of opaque
 //! fragments follows, and what pixels were before the first of them. Inputs from: the assembly stage, clears. Outputs
-//! to: [`super::band`], [`super::specification`]. Clocks: none of its own.
+//! to: [`super::band`], [`super::specification`], [`crate::layers`]. Clocks: none of its own.
 //!
-//! Nothing is kept of a scene on a target without a grid.
+//! Without a grid the unit has no part in a scene. What may be translucent is taken here all the same, and nothing else:
+//! it waits for [`crate::layers`], with the clears that take some of it back.
 
+use super::piece::extent;
 use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::{Point, Sink};
 use crate::geometry::line::Line;
 use crate::geometry::triangle::Triangle;
+use crate::hidden::held::HeldShading;
 use crate::hidden::z_buffer::DepthTest;
-use crate::shading::plane::Interpolation;
+use crate::shading::pixel::AlphaRule;
+use crate::shading::plane::{Interpolation, Shade};
 use zga_abi::Effects;
-use zga_abi::format::DepthFunction;
+use zga_abi::format::{BlendMode, DepthFunction};
 use zga_firmware::checked::{Clear, DrawState, Rectangle};
 
-/// Most primitives and clears of a scene with a grid: 68 MiB, and less for the draws.
+/// Most primitives and clears of a scene: 68 MiB, and less for the draws.
 pub const ITEM_LIMIT: usize = 1 << 20;
 
 /// What an item covers.
@@ -41,19 +45,25 @@ pub struct Item {
     pub vertices: [ScreenVertex; 3],
     /// Its place in [`Scene::draws`].
     pub draw: u32,
+    /// Its number in the draw.
+    pub number: u32,
     /// What it covers.
     pub kind: Kind,
 }
 
-/// What the items of a draw share, or what a clear does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What the items of a draw share, or what a clear does. A primitive whose colours go through more has one of its own.
+#[derive(Clone, Debug, PartialEq)]
 pub struct ItemDraw {
     /// Depth test; `None` where depth is not called for: everything passes, no depth is stored.
     pub test: Option<DepthTest>,
     /// Which colour interpolators are called.
     pub interpolation: Interpolation,
+    /// What interpolated colours go through.
+    pub shading: Option<HeldShading>,
     /// Fragments with an alpha below 255 are translucent.
     pub blend: bool,
+    /// How they are combined with what lies behind them.
+    pub mode: BlendMode,
     /// Object tag.
     pub tag: u32,
     /// Pixels that may change, inside the target.
@@ -62,6 +72,61 @@ pub struct ItemDraw {
     pub colour: Option<u32>,
     /// Of a clear: depth to be stored.
     pub depth: Option<i32>,
+}
+
+impl ItemDraw {
+    /// How the pixels of an item get their colours.
+    #[must_use]
+    pub fn shade(&self) -> Shade<'_> {
+        Shade { interpolation: self.interpolation, pixel: self.shading.as_ref().map(HeldShading::parts) }
+    }
+
+    /// What decides whether an item is translucent.
+    fn translucency(&self) -> Translucency {
+        let alphas = self.shading.as_ref().map_or(AlphaRule::Vertices, |shading| shading.pixel.alphas());
+        Translucency { interpolation: self.interpolation, mode: self.mode, alphas }
+    }
+
+    /// Whether an item with these vertices hides what lies behind it, wherever it is not a hole.
+    #[must_use]
+    pub fn is_opaque(&self, vertices: &[ScreenVertex]) -> bool {
+        !self.blend || self.translucency().is_opaque(vertices)
+    }
+
+    /// Whether fragments of an item with these vertices can hide what lies behind them.
+    #[must_use]
+    pub fn may_hide(&self, vertices: &[ScreenVertex]) -> bool {
+        !self.blend || self.translucency().may_hide(vertices)
+    }
+
+    /// Whether an item with these vertices changes nothing.
+    #[must_use]
+    pub fn is_nothing(&self, vertices: &[ScreenVertex]) -> bool {
+        self.blend && self.translucency().is_nothing(vertices)
+    }
+
+    /// Whether one of its fragments with this alpha hides what lies behind it.
+    #[must_use]
+    pub fn hides(&self, alpha: u32) -> bool {
+        !self.blend || (self.mode == BlendMode::Alpha && alpha == 255)
+    }
+
+    /// Whether shading does anything for their pixels.
+    #[must_use]
+    pub fn is_shaded(&self) -> bool {
+        self.interpolation != Interpolation::Flat || self.shading.is_some()
+    }
+
+    /// Whether items can have holes.
+    #[must_use]
+    pub fn has_holes(&self) -> bool {
+        self.shading.as_ref().is_some_and(|shading| shading.pixel.punch_through().is_some())
+    }
+
+    /// A draw that is opaque and has no tag.
+    fn new(test: Option<DepthTest>, interpolation: Interpolation, mode: BlendMode, scissor: Rectangle) -> ItemDraw {
+        ItemDraw { test, interpolation, shading: None, blend: false, mode, tag: 0, scissor, colour: None, depth: None }
+    }
 }
 
 /// What the pixels of a plane are before the first item.
@@ -148,7 +213,7 @@ impl Scene {
         let rule = self.rule.unwrap_or(Rule::InOrder);
         // A draw that blends counts as one that stores, which its opaque fragments must do.
         let stores = |draw: &ItemDraw| draw.test.is_none_or(|test| test.write);
-        let opaque = |item: &Item| greatest_alpha(&item.vertices, self.draws[item.draw as usize].interpolation) == 255;
+        let opaque = |item: &Item| self.draws[item.draw as usize].may_hide(&item.vertices);
         if rule == Rule::Nearest
             && !self.draws.iter().all(stores)
             && self.items.iter().any(|item| !stores(&self.draws[item.draw as usize]) && opaque(item))
@@ -170,6 +235,7 @@ impl Scene {
         state: &DrawState,
         test: Option<DepthTest>,
         interpolation: Interpolation,
+        alphas: AlphaRule,
     ) -> Option<Taken<'_>> {
         let area = state.scissor;
         let never = test.is_some() && state.depth_function == DepthFunction::Never;
@@ -178,7 +244,7 @@ impl Scene {
         }
         let blend = state.effects.contains(Effects::BLEND);
         let masked = state.effects.contains(Effects::ANTI_ALIAS);
-        let draw = ItemDraw { test, interpolation, blend, tag: state.tag, scissor: area, colour: None, depth: None };
+        let draw = ItemDraw { blend, tag: state.tag, ..ItemDraw::new(test, interpolation, state.blend, area) };
         self.called |= blend || masked;
         let rule = match test {
             None => Rule::Last,
@@ -187,8 +253,66 @@ impl Scene {
         };
         self.add_rule(rule);
         let draw = self.place(draw);
-        let translucent = blend.then_some(interpolation);
-        Some(Taken { items: &mut self.items, draw, masked, translucent })
+        let translucent = blend.then_some(Translucency { interpolation, mode: state.blend, alphas });
+        Some(Taken { items: &mut self.items, draw, masked, translucent, without_grid: None })
+    }
+
+    /// Begins a draw without a grid: where that of it which may be translucent waits. `None` if all of it is opaque.
+    pub fn wait(
+        &mut self,
+        state: &DrawState,
+        test: Option<DepthTest>,
+        interpolation: Interpolation,
+        alphas: AlphaRule,
+    ) -> Option<Taken<'_>> {
+        let blend = state.effects.contains(Effects::BLEND);
+        // What is opaque and asks for no depth lies over the layers that came before it.
+        let covers = test.is_none() && (blend || !self.items.is_empty());
+        if !blend && !covers {
+            return None;
+        }
+        let draw = ItemDraw { blend, ..ItemDraw::new(test, interpolation, state.blend, state.scissor) };
+        let draw = self.place(draw);
+        let translucent = blend.then_some(Translucency { interpolation, mode: state.blend, alphas });
+        let without_grid = Some(WithoutGrid { covers });
+        Some(Taken { items: &mut self.items, draw, masked: false, translucent, without_grid })
+    }
+
+    /// Whether an item of a scene without a grid is a layer: no clear, and nothing opaque.
+    #[must_use]
+    pub fn is_layer(&self, item: &Item) -> bool {
+        item.kind != Kind::Clear && !self.draws[item.draw as usize].is_opaque(&item.vertices)
+    }
+
+    /// Whether a layer waits that may touch `area`.
+    #[must_use]
+    pub fn waits_in(&self, area: &Rectangle) -> bool {
+        let meets = |item: &Item| {
+            let [low, high] = extent(item, &self.draws[item.draw as usize]);
+            self.is_layer(item)
+                && low[0].max(area.x as i32) < high[0].min(area.right as i32)
+                && low[1].max(area.y as i32) < high[1].min(area.bottom as i32)
+        };
+        self.items.iter().any(meets)
+    }
+
+    /// Takes back all layers that wait in `area`; `whole` if it is all there is.
+    pub fn take_back(&mut self, area: &Rectangle, whole: bool) {
+        if whole {
+            self.items.clear();
+            self.draws.clear();
+            self.overflowed = false;
+            return;
+        }
+        if self.items.is_empty() || area.x >= area.right || area.y >= area.bottom {
+            return;
+        }
+        if self.full() {
+            self.overflowed = true;
+            return;
+        }
+        let draw = self.place(ItemDraw::new(None, Interpolation::Flat, BlendMode::Alpha, *area));
+        self.items.push(Item { vertices: [ScreenVertex::default(); 3], draw, number: 0, kind: Kind::Clear });
     }
 
     /// The place of what the next items share. What has left no item leaves its place too: there are never more draws
@@ -206,6 +330,15 @@ impl Scene {
             Some(known) if known != rule => Some(Rule::InOrder),
             _ => Some(rule),
         };
+    }
+
+    /// Gives the items from place `first` on, all of one draw, what their colours go through.
+    pub fn shade(&mut self, first: usize, shading: impl Fn(u32) -> Option<HeldShading>) {
+        for item in &mut self.items[first..] {
+            let draw = ItemDraw { shading: shading(item.number), ..self.draws[item.draw as usize].clone() };
+            item.draw = self.draws.len() as u32;
+            self.draws.push(draw);
+        }
     }
 
     /// A clear; `whole` if it is of all pixels, `planes` if it is of all planes that the target has.
@@ -235,30 +368,20 @@ impl Scene {
         }
         self.add_rule(Rule::InOrder);
         let draw = self.place(ItemDraw {
-            test: None,
-            interpolation: Interpolation::Flat,
-            blend: false,
-            tag: 0,
-            scissor: area,
             colour: clear.colour,
             depth: clear.depth.map(|depth| depth as i32),
+            ..ItemDraw::new(None, Interpolation::Flat, BlendMode::Alpha, area)
         });
-        self.items.push(Item { vertices: [ScreenVertex::default(); 3], draw, kind: Kind::Clear });
+        self.items.push(Item { vertices: [ScreenVertex::default(); 3], draw, number: 0, kind: Kind::Clear });
     }
 }
 
-/// The least alpha of a primitive.
+/// The least and the greatest alpha of a primitive's vertices.
 #[must_use]
-pub fn least_alpha(vertices: &[ScreenVertex], interpolation: Interpolation) -> u32 {
+pub fn vertex_alphas(vertices: &[ScreenVertex], interpolation: Interpolation) -> [u32; 2] {
     let seen = if interpolation == Interpolation::Flat { &vertices[..1] } else { vertices };
-    seen.iter().map(|v| v.colour >> 24).min().unwrap_or(255)
-}
-
-/// The greatest alpha of a primitive.
-#[must_use]
-pub fn greatest_alpha(vertices: &[ScreenVertex], interpolation: Interpolation) -> u32 {
-    let seen = if interpolation == Interpolation::Flat { &vertices[..1] } else { vertices };
-    seen.iter().map(|v| v.colour >> 24).max().unwrap_or(0)
+    let alphas = || seen.iter().map(|v| v.colour >> 24);
+    [alphas().min().unwrap_or(255), alphas().max().unwrap_or(0)]
 }
 
 /// Where the items of one draw go.
@@ -270,8 +393,48 @@ pub struct Taken<'a> {
     pub draw: u32,
     /// They are drawn with masks.
     pub masked: bool,
-    /// They can be translucent: then how their colours are interpolated.
-    pub translucent: Option<Interpolation>,
+    /// They can be translucent.
+    pub translucent: Option<Translucency>,
+    /// There is no grid.
+    pub without_grid: Option<WithoutGrid>,
+}
+
+/// What is taken where there is no grid: layers, and of what is opaque only that which lies over them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WithoutGrid {
+    /// Opaque primitives lie over the layers that came before them.
+    pub covers: bool,
+}
+
+/// What decides whether a primitive of a draw that blends is translucent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Translucency {
+    /// How its colours are interpolated.
+    pub interpolation: Interpolation,
+    /// How it is combined with what lies behind it.
+    pub mode: BlendMode,
+    /// What becomes of the alphas of its vertices.
+    pub alphas: AlphaRule,
+}
+
+impl Translucency {
+    /// Whether a primitive hides what lies behind it.
+    #[inline(always)]
+    fn is_opaque(self, vertices: &[ScreenVertex]) -> bool {
+        self.mode == BlendMode::Alpha && self.alphas.range(vertex_alphas(vertices, self.interpolation))[0] == 255
+    }
+
+    /// Whether fragments of a primitive can hide what lies behind them.
+    #[inline(always)]
+    fn may_hide(self, vertices: &[ScreenVertex]) -> bool {
+        self.mode == BlendMode::Alpha && self.alphas.range(vertex_alphas(vertices, self.interpolation))[1] == 255
+    }
+
+    /// Whether a primitive changes nothing.
+    #[inline(always)]
+    fn is_nothing(self, vertices: &[ScreenVertex]) -> bool {
+        self.mode == BlendMode::Alpha && self.alphas.range(vertex_alphas(vertices, self.interpolation))[1] == 0
+    }
 }
 
 impl Taken<'_> {
@@ -279,12 +442,30 @@ impl Taken<'_> {
     /// path would hide with it.
     #[inline(always)]
     fn is_opaque(&self, vertices: &[ScreenVertex]) -> bool {
-        self.translucent.is_none_or(|interpolation| least_alpha(vertices, interpolation) == 255)
+        self.translucent.is_none_or(|translucency| translucency.is_opaque(vertices))
+    }
+
+    /// Takes a primitive that is drawn without masks; whether it goes to the path too. Apart from the loop over
+    /// primitives, most of which nobody takes.
+    #[inline(never)]
+    fn take(&mut self, vertices: [ScreenVertex; 3], kind: Kind, number: u32) -> bool {
+        if self.wants(&vertices) {
+            self.push(vertices, kind, number);
+        }
+        self.is_opaque(&vertices)
+    }
+
+    /// Whether the unit takes a primitive.
+    fn wants(&self, vertices: &[ScreenVertex]) -> bool {
+        let Some(WithoutGrid { covers }) = self.without_grid else {
+            return !self.masked;
+        };
+        if self.is_opaque(vertices) { covers } else { !self.translucent.is_some_and(|of| of.is_nothing(vertices)) }
     }
 
     #[inline(always)]
-    fn push(&mut self, vertices: [ScreenVertex; 3], kind: Kind) {
-        self.items.push(Item { vertices, draw: self.draw, kind });
+    fn push(&mut self, vertices: [ScreenVertex; 3], kind: Kind, number: u32) {
+        self.items.push(Item { vertices, draw: self.draw, number, kind });
     }
 }
 
@@ -299,45 +480,42 @@ pub struct Taking<'a, 't, S> {
 impl<S> Taking<'_, '_, S> {
     /// Takes a primitive that is drawn without masks; whether it goes to the path too.
     #[inline(always)]
-    fn take(&mut self, vertices: [ScreenVertex; 3], kind: Kind) -> bool {
-        let Some(taken) = &mut self.taken else {
-            return true;
-        };
-        if !taken.masked {
-            taken.push(vertices, kind);
+    fn take(&mut self, vertices: [ScreenVertex; 3], kind: Kind, number: u32) -> bool {
+        match &mut self.taken {
+            None => true,
+            Some(taken) => taken.take(vertices, kind, number),
         }
-        taken.is_opaque(&vertices)
     }
 }
 
 impl<S: Sink> Sink for Taking<'_, '_, S> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], number: u32) {
-        if self.take(*vertices, Kind::Triangle) {
+        if self.take(*vertices, Kind::Triangle, number) {
             self.sink.triangle(triangle, columns, vertices, number);
         }
     }
 
     #[inline(always)]
     fn line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: u32) {
-        if self.take([vertices[0], vertices[1], vertices[1]], Kind::Line) {
+        if self.take([vertices[0], vertices[1], vertices[1]], Kind::Line, number) {
             self.sink.line(line, vertices, number);
         }
     }
 
     #[inline(always)]
     fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32) {
-        if self.take([*vertex; 3], Kind::Point) {
+        if self.take([*vertex; 3], Kind::Point, number) {
             self.sink.point(point, vertex, number);
         }
     }
 
     #[inline(always)]
-    fn masked(&mut self, vertices: &[ScreenVertex; 3]) {
+    fn masked(&mut self, vertices: &[ScreenVertex; 3], number: u32) {
         if let Some(taken) = &mut self.taken {
-            taken.push(*vertices, Kind::Masked);
+            taken.push(*vertices, Kind::Masked, number);
         }
-        self.sink.masked(vertices);
+        self.sink.masked(vertices, number);
     }
 
     #[inline(always)]

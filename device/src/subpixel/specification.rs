@@ -2,29 +2,38 @@
 //!
 //! What [`super::band`] must equal: fragments, active pixels, counts.
 
-use super::band::{Input, Work};
+use super::band::{Input, Resolved, Work};
+use super::bands::Entry;
+use super::gamma::Space;
+use super::left::covers_centre;
+use super::lists::Fragment;
 use super::piece::{Cover, Piece};
-use super::pixel::Fragment;
 use super::scene::Rule;
 use super::{Counts, Setting};
 use crate::hidden::z_buffer::specification::covers;
 
-/// Finds the active pixels of a band and their fragments.
-pub fn gather(work: &mut Work, input: &Input<'_>, counts: &mut Counts) {
-    work.begin(input, counts);
-    find(work, input, counts);
-    if work.lists.count(input) {
-        // The masks are counted already.
-        find(work, input, &mut Counts::default());
-        work.lists.fit(input);
-        find(work, input, &mut Counts::default());
+/// Resolves the active pixels of a band.
+pub fn draw(work: &mut Work, input: &Input<'_>, out: &mut Vec<Resolved>, counts: &mut Counts) {
+    let scene = input.scene;
+    let beyond = input.top + input.lines as i32;
+    work.pieces.clear();
+    work.covers.clear();
+    for &Entry { number, .. } in input.items {
+        let item = &scene.items[number as usize];
+        let draw = &scene.draws[item.draw as usize];
+        let (piece, cover) = Piece::new(input.setting, number, item, draw, input.top);
+        work.pieces.push(piece);
+        work.covers.push((cover, input.area(item, [[0, input.top], [i32::MAX, beyond]])));
     }
-}
-
-fn find(work: &mut Work, input: &Input<'_>, counts: &mut Counts) {
+    work.shader.begin(input.setting, work.pieces.len());
+    let space = Space::new(input.setting.resolve);
     for line in 0..input.lines {
         for x in 0..input.setting.size[0] as usize {
-            pixel(work, input, x, line, counts);
+            let mut list = std::mem::take(&mut work.list);
+            if pixel(work, input, &mut list, x, line) {
+                work.pixel(input, space, &mut list, [x, line], out, counts);
+            }
+            work.list = list;
         }
     }
 }
@@ -53,36 +62,39 @@ fn centre_only(input: &Input<'_>, piece: &Piece, (cover, area): &(Cover, [[i32; 
     let [[left, first], [right, beyond]] = *area;
     let inside = (left..right).contains(&x) && (first..beyond).contains(&y);
     let vertices = &input.scene.items[piece.item as usize].vertices;
-    inside && !piece.layer && matches!(cover, Cover::Samples(_)) && covers(vertices, x, y)
+    inside && piece.drawn && matches!(cover, Cover::Samples(_)) && covers(vertices, x, y)
 }
 
-fn pixel(work: &mut Work, input: &Input<'_>, x: usize, line: usize, counts: &mut Counts) {
+/// Finds what is left of the fragments of a pixel, and whether it is active.
+fn pixel(work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, x: usize, line: usize) -> bool {
     let (column, y) = (x as i32, input.top + line as i32);
     let full = input.setting.grid.full();
-    let at = (line * input.words() * 64 + x) as u32;
-    let pieces = work.pieces.iter().zip(&work.covers).zip(0..);
-    let found = pieces.filter_map(|((piece, cover), number)| {
+    list.clear();
+    for ((piece, cover), number) in work.pieces.iter().zip(&work.covers).zip(0..) {
         let mask = mask(input, piece, cover, column, y);
-        (mask != 0 || centre_only(input, piece, cover, column, y)).then_some((piece, number, mask))
-    });
-    let found: Vec<_> = found.collect();
-    let whole = |(piece, _, mask): &&(&Piece, u32, u64)| *mask == full && !piece.layer;
-    let (seen, crossed): (Vec<_>, bool) = if input.setting.rule == Rule::InOrder {
-        let covers = found.iter().filter(whole).map(|(piece, ..)| if input.undecided(piece) { 2 } else { 1 });
-        let crossed = covers.sum::<usize>() >= 2;
-        (found, crossed)
-    } else {
-        let base = input.base_at(x, line);
-        let spans = found.iter().filter(whole).map(|(piece, ..)| piece.bounds(column, y));
-        let limit = spans.clone().map(|bounds| bounds[1]).fold(base, i32::min);
-        let not_hidden = spans.filter(|bounds| bounds[0] <= limit).count() + usize::from(base <= limit);
-        (found.into_iter().filter(|(piece, ..)| piece.bounds(column, y)[0] <= limit).collect(), not_hidden >= 2)
-    };
-    counts.masks += seen.iter().filter(|(_, _, mask)| *mask != full).count() as u64;
-    let active = crossed || seen.iter().any(|(piece, _, mask)| *mask != full || piece.layer);
-    if active {
-        work.active[line * input.words() + x / 64] |= 1 << (x % 64);
-        let fragments: Vec<_> = seen.iter().map(|&(_, piece, mask)| Fragment { mask, at, piece }).collect();
-        fragments.into_iter().for_each(|fragment| work.lists.put(fragment));
+        if mask != 0 || centre_only(input, piece, cover, column, y) {
+            list.push(Fragment::new(mask, number, piece.bounds(column, y)));
+        }
     }
+    let piece = |fragment: &Fragment| &work.pieces[fragment.piece as usize];
+    let part = |fragment: &Fragment| fragment.mask != full || piece(fragment).layer;
+    if input.setting.rule == Rule::InOrder {
+        let whole = list.iter().filter(|fragment| !part(fragment));
+        let covers: usize = whole.map(|fragment| if input.undecided(piece(fragment)) { 2 } else { 1 }).sum();
+        return covers >= 2 || list.iter().any(part);
+    }
+    let base = input.base_at(x, line);
+    let cover_together = |depth: i32| {
+        let opaque = list.iter().filter(|fragment| fragment.far <= depth && !piece(fragment).layer);
+        opaque.fold(0, |mask, fragment| mask | fragment.mask) == full
+    };
+    let limit = list.iter().map(|fragment| fragment.far).filter(|&far| cover_together(far)).fold(base, i32::min);
+    list.retain(|fragment| fragment.near <= limit);
+    let left = list.len() + usize::from(base <= limit);
+    let colours = list.iter().map(|fragment| piece(fragment).plain.filter(|_| !piece(fragment).layer));
+    let colours: Vec<Option<u32>> = colours.collect();
+    let one = colours.iter().all(|&colour| colour.is_some() && colour == colours[0]);
+    let hides = |fragment: &Fragment| fragment.far <= limit;
+    let centre = |fragment: &Fragment| covers_centre(input, piece(fragment), fragment.mask, [column, y]);
+    left > 1 && !(one && base > limit && list.iter().any(|fragment| hides(fragment) && centre(fragment)))
 }

@@ -8,7 +8,7 @@
 use super::band::{Input, LINES, Resolved, Work};
 use super::bands::Bands;
 use super::scene::Scene;
-use super::{Counts, Setting, specification};
+use super::{Counts, Setting};
 use crate::pipeline::bands::Counts as _;
 use crate::probe::account::Clocks;
 use fearless_simd::Level;
@@ -44,12 +44,13 @@ impl Unit {
         stop: &dyn Fn(Clocks) -> Option<Stopped>,
     ) -> (Counts, Result<(), Stopped>) {
         let height = setting.size[1] as usize;
-        self.bands.fill(scene, setting.size[1]);
+        self.bands.fill(scene, setting.rule, setting.size[1]);
         let threads = pool.map_or(1, ThreadPool::current_num_threads);
         self.works.resize_with(threads.max(self.works.len()), Mutex::default);
         let group = GROUP * threads;
         self.resolved.resize_with(group.max(self.resolved.len()), Vec::new);
-        let mut total = Counts::default();
+        // The edges of a triangle with masks begin in one of them.
+        let mut total = Counts { masks: self.bands.masked(), ..Counts::default() };
         for first in (0..self.bands.count()).step_by(group) {
             let (bands, works) = (&self.bands, &self.works);
             let draw = |(band, out): (usize, &mut Vec<Resolved>)| {
@@ -64,11 +65,7 @@ impl Unit {
                 let top = band * LINES;
                 let lines = LINES.min(height - top);
                 let input = Input { setting, scene, items: bands.items(band), top: top as i32, lines };
-                match level {
-                    Some(level) => work.gather(level, &input, &mut counts),
-                    None => specification::gather(&mut work, &input, &mut counts),
-                }
-                work.finish(&input, out, &mut counts);
+                work.draw(level, &input, out, &mut counts);
                 counts
             };
             let outs = self.resolved[..group].iter_mut().enumerate().map(|(n, out)| (first + n, out));

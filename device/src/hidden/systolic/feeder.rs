@@ -16,7 +16,9 @@ use crate::geometry::line::Line;
 use crate::geometry::plane::{Axis, DepthPlane, below};
 use crate::hidden::held::{Held, HeldDraw, Item};
 use crate::hidden::z_buffer::DepthTest;
-use crate::shading::plane::Interpolation;
+use crate::hidden::z_buffer::specification::colour_plane;
+use crate::shading::pixel::{PixelShading, ShadingCounts};
+use crate::shading::plane::ColourPlane;
 use std::ops::Range;
 use zga_abi::format::{DepthFormat, TokenColour};
 use zga_firmware::checked::{Rectangle, Target};
@@ -38,6 +40,8 @@ pub struct Feeder<'a> {
     tokens: Vec<Token>,
     /// Tokens of triangles so far.
     pub spans: u64,
+    /// What looking for holes has cost.
+    pub shading: ShadingCounts,
 }
 
 impl<'a> Feeder<'a> {
@@ -76,6 +80,7 @@ impl<'a> Feeder<'a> {
             merged: Vec::new(),
             tokens: Vec::new(),
             spans: 0,
+            shading: ShadingCounts::default(),
         }
     }
 
@@ -90,7 +95,17 @@ impl<'a> Feeder<'a> {
             let item = &self.held.items[number as usize];
             if let Some(token) = self.token(item, number, y) {
                 self.spans += u64::from(matches!(item, Item::Primitive(Shape::Triangle(..), _)));
-                self.tokens.push(token);
+                match holes(self.held, item) {
+                    None => self.tokens.push(token),
+                    Some((colours, shading)) => {
+                        let before = self.tokens.len();
+                        cut(&token, y, &colours, &mut self.tokens);
+                        let pixels = |token: &Token| u64::from(token.more) + 1;
+                        let solid: u64 = self.tokens[before..].iter().map(pixels).sum();
+                        let looked_up = shading.looked_up(pixels(&token), pixels(&token) - solid);
+                        self.shading = self.shading.plus(looked_up);
+                    }
+                }
             }
         }
         &self.tokens
@@ -137,9 +152,7 @@ impl<'a> Feeder<'a> {
             Item::Primitive(shape, draw) => {
                 let draw = &self.held.draws[*draw as usize];
                 let luminance = match self.colour {
-                    TokenColour::Value if draw.interpolation == Interpolation::Flat => {
-                        Luminance::Value(first_colour(shape))
-                    }
+                    TokenColour::Value if !draw.is_shaded() => Luminance::Value(first_colour(shape)),
                     _ => Luminance::Tag(number + 1),
                 };
                 let test = draw.test.unwrap_or(DepthTest::ALWAYS);
@@ -147,6 +160,33 @@ impl<'a> Feeder<'a> {
                 segment(columns, &draw.scissor, y, &shape.plane(self.format), test, Some(luminance))
             }
         }
+    }
+}
+
+/// What knows the holes of an item's texture, and its shading; `None` if it has none.
+fn holes<'h>(held: &'h Held, item: &Item) -> Option<(ColourPlane, &'h PixelShading)> {
+    let Item::Primitive(shape, draw) = item else {
+        return None;
+    };
+    let draw = &held.draws[*draw as usize];
+    let shading = draw.shading.as_ref().filter(|shading| shading.pixel.punch_through().is_some())?;
+    Some((colour_plane(shape, &draw.shade()), &*shading.pixel))
+}
+
+/// The tokens of a segment on line `y` that is cut at the holes of its texture.
+fn cut(token: &Token, y: u32, colours: &ColourPlane, tokens: &mut Vec<Token>) {
+    let beyond = token.first + token.more + 1;
+    let mut first = token.first;
+    while first < beyond {
+        if colours.is_hole(first as i32, y as i32) {
+            first += 1;
+            continue;
+        }
+        let end = (first..beyond).find(|&x| colours.is_hole(x as i32, y as i32)).unwrap_or(beyond);
+        let skipped = i64::from(first - token.first);
+        let z = token.z.wrapping_add(token.dz.wrapping_mul(skipped));
+        tokens.push(Token { first, more: end - first - 1, z, ..*token });
+        first = end;
     }
 }
 

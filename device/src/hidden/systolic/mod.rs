@@ -50,6 +50,7 @@ pub use scene::draw_until;
 pub use waves::Waves;
 
 use crate::probe::account::{Account, Clocks};
+use crate::shading::pixel::ShadingCounts;
 use token::Pixel;
 use zga_abi::Counter;
 
@@ -92,8 +93,10 @@ pub struct SystolicCounts {
     pub writes: u64,
     /// Colours written to the frame buffer.
     pub colours: u64,
-    /// Pixels whose colour is interpolated.
+    /// Pixels that are shaded: their colour is interpolated, or goes through more.
     pub shaded: u64,
+    /// What they cost beyond interpolated colours.
+    pub shading: ShadingCounts,
 }
 
 /// Charges the events of a scene.
@@ -107,4 +110,5 @@ pub fn charge(counts: &SystolicCounts, account: &mut Account) {
     account.add(Counter::ColourWrites, counts.colours);
     account.add(Counter::ShadingPixels, counts.shaded);
     account.charge(Counter::CyclesShading, Clocks(counts.shaded));
+    counts.shading.charge(account);
 }

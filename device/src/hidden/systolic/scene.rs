@@ -17,10 +17,11 @@ use super::token::{Beat, Luminance, Pixel, Token};
 use super::waves::Waves;
 use super::{Machine, SystolicCounts};
 use crate::geometry::plane::below;
-use crate::hidden::held::{Held, Item};
+use crate::hidden::held::{Depths, Held, HeldDraw, Item};
 use crate::hidden::z_buffer::specification::colour_plane;
 use crate::probe::account::Clocks;
-use crate::shading::plane::{ColourPlane, Interpolation};
+use crate::shading::pixel::ShadingCounts;
+use crate::shading::plane::ColourPlane;
 use crate::shading::resolve::{LANES, PixelRow, Planes, Row16, Row32, resolve_row};
 use fearless_simd::{Level, dispatch};
 use zga_abi::format::PixelFormat;
@@ -30,14 +31,13 @@ use zga_firmware::checked::{SystolicSetting, Target};
 /// Asks whether a scene that has taken so many clocks is to end.
 pub type Stop<'a> = &'a dyn Fn(Clocks) -> Option<Stopped>;
 
-/// Draws a scene with the clocked model that the target's variant names; `depth` is empty where there is no
-/// Z buffer. Without a SIMD level the elements are stepped one by one, as they are specified. Before each line
+/// Draws a scene with the clocked model that the target's variant names. Without a SIMD level the elements are stepped one by one, as they are specified. Before each line
 /// `stop` is asked with the clocks so far; what it says ends the scene there, and comes back beside the counts.
 pub fn draw_until(
     held: &Held,
     target: &Target,
     colour: &mut [u32],
-    depth: &mut [i32],
+    depth: Depths<'_>,
     level: Option<Level>,
     waves: Option<&mut Waves>,
     stop: Stop<'_>,
@@ -63,7 +63,7 @@ pub fn draw_scene(
     level: Option<Level>,
     waves: Option<&mut Waves>,
 ) -> SystolicCounts {
-    draw_until(held, target, colour, depth, level, waves, &|_| None).0
+    draw_until(held, target, colour, Depths::of(target, depth), level, waves, &|_| None).0
 }
 
 /// A scene on its way through a machine.
@@ -138,7 +138,7 @@ impl<'a, 'w, M: Machine> Run<'a, 'w, M> {
         }
     }
 
-    fn counts(self, spans: u64) -> (SystolicCounts, Option<Stopped>) {
+    fn counts(self, spans: u64, holes: ShadingCounts) -> (SystolicCounts, Option<Stopped>) {
         let target = self.picture.target;
         let pixels = u64::from(self.width) * u64::from(self.height);
         let depth = target.depth.is_some();
@@ -150,6 +150,7 @@ impl<'a, 'w, M: Machine> Run<'a, 'w, M> {
             writes: if depth { pixels } else { 0 },
             colours: self.picture.colours,
             shaded: self.picture.shaded,
+            shading: self.picture.shading.plus(holes),
         };
         (counts, self.stopped)
     }
@@ -185,7 +186,7 @@ impl<M: Machine<Port = Beat>> Run<'_, '_, M> {
         if let Some((last, _)) = self.refresh {
             self.idle_until(last + u64::from(self.width));
         }
-        self.counts(feeder.spans)
+        self.counts(feeder.spans, feeder.shading)
     }
 }
 
@@ -204,7 +205,7 @@ impl<M: Machine<Port = Slot>> Run<'_, '_, M> {
             self.step(Slot::REFRESH);
             self.idle_until(self.clock - 1 + 2 * u64::from(self.width));
         }
-        self.counts(feeder.spans)
+        self.counts(feeder.spans, feeder.shading)
     }
 }
 
@@ -213,7 +214,7 @@ struct Picture<'a> {
     held: &'a Held,
     target: &'a Target,
     colour: &'a mut [u32],
-    depth: &'a mut [i32],
+    depth: Depths<'a>,
     level: Option<Level>,
     /// The pixel that comes next: column, row.
     place: [u32; 2],
@@ -224,8 +225,10 @@ struct Picture<'a> {
     seen: SeenPlanes<'a>,
     /// Colours written.
     colours: u64,
-    /// Colours interpolated.
+    /// Pixels shaded.
     shaded: u64,
+    /// What they cost beyond interpolated colours.
+    shading: ShadingCounts,
 }
 
 impl<'a> Picture<'a> {
@@ -233,7 +236,7 @@ impl<'a> Picture<'a> {
         held: &'a Held,
         target: &'a Target,
         colour: &'a mut [u32],
-        depth: &'a mut [i32],
+        depth: Depths<'a>,
         level: Option<Level>,
     ) -> Picture<'a> {
         Picture {
@@ -248,16 +251,13 @@ impl<'a> Picture<'a> {
             seen: SeenPlanes::new(held),
             colours: 0,
             shaded: 0,
+            shading: ShadingCounts::default(),
         }
     }
 
     /// Depth of pixel (`x`, `y`) before the scene; anything below the last line.
     fn initial_depth(&self, x: u32, y: u32) -> i32 {
-        let stored = || {
-            let pitch = self.target.depth?.pitch as usize / 4;
-            self.depth.get(y as usize * pitch + x as usize).copied()
-        };
-        self.held.background.depth.or_else(stored).unwrap_or(self.target.depth_format.maximum() as i32)
+        self.held.background.depth.or_else(|| self.depth.at(x, y)).unwrap_or(self.target.depth_format.maximum() as i32)
     }
 
     /// The next pixel on the buses.
@@ -268,8 +268,8 @@ impl<'a> Picture<'a> {
             Luminance::Tag(tag) => self.tags[x as usize] = tag,
             Luminance::Value(colour) => self.values.push((x, colour)),
         }
-        if let Some(surface) = self.target.depth {
-            self.depth[y as usize * (surface.pitch as usize / 4) + x as usize] = pixel.depth;
+        if self.depth.pitch != 0 {
+            self.depth.rows[y as usize * self.depth.pitch + x as usize] = pixel.depth;
         }
         self.place = [x + 1, y];
         if x + 1 == self.target.colour.width {
@@ -303,7 +303,10 @@ impl<'a> Picture<'a> {
             }
         }
         let tags = || self.tags.iter().filter(|&&tag| tag != 0);
-        self.shaded += tags().filter(|&&tag| self.seen.is_interpolated(tag)).count() as u64;
+        for draw in tags().filter_map(|&tag| self.seen.draw(tag)).filter(|draw| draw.is_shaded()) {
+            self.shaded += 1;
+            self.shading = self.shading.plus(draw.cost());
+        }
         let winners = tags().count() + self.values.len();
         self.colours += if background.is_some() { width } else { winners } as u64;
         self.tags.fill(0);
@@ -325,7 +328,7 @@ impl Line<'_> {
     fn write(&self, row: &mut impl PixelRow, planes: &mut SeenPlanes<'_>) {
         let y = self.y as usize;
         match self.level {
-            Some(level) => dispatch!(level, simd => resolve_row(simd, row, self.tags, 0, y, planes)),
+            Some(level) => dispatch!(level, simd => resolve_row::<_, true>(simd, row, self.tags, 0, y, planes)),
             None => {
                 let tags = self.tags[..self.width].iter().enumerate().filter(|(_, tag)| **tag != 0);
                 tags.for_each(|(x, &tag)| row.put(x, planes.plane(tag).colour(x as i32, y as i32)));
@@ -355,17 +358,17 @@ impl<'a> SeenPlanes<'a> {
         self.held.items.get((tag as usize).wrapping_sub(1))
     }
 
-    /// Whether the pixels of an item are interpolated.
-    fn is_interpolated(&self, tag: u32) -> bool {
+    /// The draw of an item.
+    fn draw(&self, tag: u32) -> Option<&'a HeldDraw> {
         match self.item(tag) {
-            Some(Item::Primitive(_, draw)) => self.held.draws[*draw as usize].interpolation != Interpolation::Flat,
-            _ => false,
+            Some(Item::Primitive(_, draw)) => Some(&self.held.draws[*draw as usize]),
+            _ => None,
         }
     }
 
     fn make(&self, tag: u32) -> ColourPlane {
         match self.item(tag) {
-            Some(Item::Primitive(shape, draw)) => colour_plane(shape, self.held.draws[*draw as usize].interpolation),
+            Some(Item::Primitive(shape, draw)) => colour_plane(shape, &self.held.draws[*draw as usize].shade()),
             Some(Item::Clear { colour, .. }) => ColourPlane::Flat(colour.unwrap_or(0)),
             None => ColourPlane::Flat(0),
         }

@@ -21,6 +21,7 @@ use crate::geometry::plane::Axis;
 use crate::geometry::triangle::Triangle;
 use crate::geometry::{PIXEL, ScreenVertex};
 use crate::hidden::held::Background;
+use crate::shading::pixel::ShadingCounts;
 use zga_firmware::checked::{Rectangle, Target};
 
 /// What the pixels of a scene say that its primitives do not.
@@ -28,8 +29,10 @@ use zga_firmware::checked::{Rectangle, Target};
 pub struct PixelCounts {
     /// Runs of pixels of one triangle on one row.
     pub spans: u64,
-    /// Pixels whose colour, as it is seen in the end, is interpolated.
+    /// Pixels whose colour, as it is seen in the end, is interpolated or goes through more.
     pub shaded: u64,
+    /// What they cost beyond interpolated colours.
+    pub shading: ShadingCounts,
 }
 
 /// Sums of a scene's primitives.
@@ -129,6 +132,7 @@ impl Sorts {
             links_removed: self.stored,
             spans: pixels.spans,
             shaded: pixels.shaded,
+            shading: pixels.shading,
             ..SortCounts::default()
         };
         let mut live = 0_u32;
@@ -263,7 +267,7 @@ impl Sorts {
 }
 
 impl Sink for Sorts {
-    fn masked(&mut self, _vertices: &[ScreenVertex; 3]) {}
+    fn masked(&mut self, _vertices: &[ScreenVertex; 3], _number: u32) {}
 
     #[inline(always)]
     fn triangle(&mut self, _triangle: &Triangle, _columns: [i32; 2], v: &[ScreenVertex; 3], _number: u32) {

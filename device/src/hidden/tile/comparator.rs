@@ -21,6 +21,7 @@ use crate::geometry::plane::{Axis, DepthPlane};
 use crate::geometry::triangle::doubled_area;
 use crate::geometry::{CENTRE, PIXEL, ScreenVertex};
 use crate::hidden::z_buffer::DepthTest;
+use crate::shading::plane::ColourPlane;
 use zga_firmware::checked::Rectangle;
 
 /// Place of a polygon in the parameter buffer.
@@ -145,7 +146,7 @@ pub enum DepthRule {
 }
 
 /// Set-up of a polygon, the same for all comparators.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct SetUp<'h> {
     /// Where it covers.
     pub coverage: Coverage<'h>,
@@ -155,6 +156,8 @@ pub struct SetUp<'h> {
     pub depth: DepthRule,
     /// Its colour is drawn: it becomes the polygon seen where it passes.
     pub seen: bool,
+    /// What knows the holes of its texture, where that has any.
+    pub holes: Option<ColourPlane>,
 }
 
 /// All comparators of a tile, row by row.
@@ -191,8 +194,9 @@ impl Array {
     }
 
     /// Compares a polygon at all pixels. Comparators that now see it are listed in `won`; their ids are
-    /// still those of what they saw before.
-    pub fn compare(&mut self, polygon: &SetUp<'_>, won: &mut Vec<usize>) {
+    /// still those of what they saw before. Returns how many pixels it covers, and how many of them are holes.
+    pub fn compare(&mut self, polygon: &SetUp<'_>, won: &mut Vec<usize>) -> [u64; 2] {
+        let [mut covered, mut punched] = [0; 2];
         let (area, tile) = (&polygon.area, self.pixels);
         for y in tile.y.max(area.y)..tile.bottom.min(area.bottom) {
             for x in tile.x.max(area.x)..tile.right.min(area.right) {
@@ -200,6 +204,11 @@ impl Array {
                 let Some(ratios) = polygon.coverage.at(column, row) else {
                     continue;
                 };
+                covered += 1;
+                if polygon.holes.as_ref().is_some_and(|holes| holes.is_hole(column, row)) {
+                    punched += 1;
+                    continue;
+                }
                 let place = self.place(x, y);
                 let mine = &mut self.comparators[place];
                 match polygon.depth {
@@ -221,6 +230,7 @@ impl Array {
                 }
             }
         }
+        [covered, punched]
     }
 
     /// Changes the polygon that a comparator sees; returns the one before.

@@ -21,7 +21,8 @@ use crate::geometry::triangle::doubled_area;
 use crate::geometry::{PIXEL, ScreenVertex};
 use crate::hidden::held::{Held, Item};
 use crate::hidden::z_buffer::specification::colour_plane;
-use crate::shading::plane::{ColourPlane, Interpolation};
+use crate::shading::pixel::ShadingCounts;
+use crate::shading::plane::ColourPlane;
 
 /// A polygon of the parameter buffer.
 #[derive(Debug)]
@@ -46,8 +47,10 @@ pub struct Interpolator<'h> {
 pub struct Shaded {
     /// RGBA, R in 7:0.
     pub colour: u32,
-    /// The draw calls for interpolated colours.
-    pub interpolated: bool,
+    /// The draw calls for shading: interpolated colours, or more.
+    pub is_shaded: bool,
+    /// What it cost beyond an interpolated colour.
+    pub cost: ShadingCounts,
 }
 
 impl<'h> Interpolator<'h> {
@@ -96,14 +99,17 @@ impl<'h> Interpolator<'h> {
         let Parameters { item, plane, .. } = self.slots.get_mut(slot as usize)?.as_mut()?;
         Some(match item {
             Item::Primitive(shape, draw) => {
-                let interpolation = self.held.draws[*draw as usize].interpolation;
+                let draw = &self.held.draws[*draw as usize];
                 let [x, y] = pixel(shape, ratios);
                 Shaded {
-                    colour: plane.get_or_insert_with(|| colour_plane(shape, interpolation)).colour(x, y),
-                    interpolated: interpolation != Interpolation::Flat,
+                    colour: plane.get_or_insert_with(|| colour_plane(shape, &draw.shade())).colour(x, y),
+                    is_shaded: draw.is_shaded(),
+                    cost: draw.cost(),
                 }
             }
-            Item::Clear { colour, .. } => Shaded { colour: (*colour)?, interpolated: false },
+            Item::Clear { colour, .. } => {
+                Shaded { colour: (*colour)?, is_shaded: false, cost: ShadingCounts::default() }
+            }
         })
     }
 }

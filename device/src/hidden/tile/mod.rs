@@ -81,6 +81,7 @@ mod tests;
 
 use super::held::Background;
 use crate::probe::account::{Account, Clocks};
+use crate::shading::pixel::ShadingCounts;
 use zga_abi::Counter;
 use zga_firmware::checked::{Rectangle, Target};
 
@@ -113,8 +114,10 @@ pub struct SortCounts {
     pub writes: u64,
     /// Colours written to the frame buffer.
     pub colours: u64,
-    /// Colours interpolated.
+    /// Pixels that are shaded: their colour is interpolated, or goes through more.
     pub shaded: u64,
+    /// What they cost beyond interpolated colours.
+    pub shading: ShadingCounts,
     /// Clocks of the unit, the interpolators' left out.
     pub clocks: u64,
 }
@@ -139,6 +142,7 @@ pub fn charge(counts: &SortCounts, account: &mut Account) {
     }
     account.charge(Counter::CyclesTile, Clocks(counts.clocks));
     account.charge(Counter::CyclesShading, Clocks(counts.shaded));
+    counts.shading.charge(account);
 }
 
 /// How a target is cut into tiles.

@@ -19,23 +19,23 @@ use super::{Grid, SortCounts, Traffic, area};
 use crate::geometry::assembly::Shape;
 use crate::geometry::plane::below;
 use crate::geometry::triangle::Triangle;
-use crate::hidden::held::{Background, Held, Item};
+use crate::hidden::held::{Background, Depths, Held, Item};
+use crate::hidden::z_buffer::specification::colour_plane;
 use crate::probe::account::Clocks;
 use zga_abi::format::DepthFormat;
 use zga_firmware::Stopped;
 use zga_firmware::checked::{Rectangle, Target};
 
-/// Draws a scene. `colour` and `depth` are the target's surfaces, `depth` empty where it has no Z buffer.
-/// A scene that neither draws nor clears anything does nothing. Before each row of tiles `stop` is asked with
+/// Draws a scene. `colour` and `depth` are the target's surfaces. A scene that neither draws nor clears anything does nothing. Before each row of tiles `stop` is asked with
 /// the clocks so far; what it says ends the scene there, and comes back beside the counts.
 pub fn draw_until(
     held: &Held,
     target: &Target,
     colour: &mut [u32],
-    depth: &mut [i32],
+    depth: Depths<'_>,
     stop: &dyn Fn(Clocks) -> Option<Stopped>,
 ) -> (SortCounts, Option<Stopped>) {
-    let grid = Grid::new(target);
+    let (Depths { rows: depth, pitch: depth_pitch }, grid) = (depth, Grid::new(target));
     let mut y_sort = YSort::new(grid);
     for item in &held.items {
         y_sort.insert(item, Extent::new(held, item));
@@ -48,12 +48,7 @@ pub fn draw_until(
     let mut unit = Unit {
         held,
         format: target.depth_format,
-        memory: Memory {
-            colour,
-            surface: target.colour,
-            depth,
-            depth_pitch: target.depth.map_or(0, |surface| surface.pitch as usize / 4),
-        },
+        memory: Memory { colour, surface: target.colour, depth, depth_pitch },
         array: Array::new(target.tile),
         interpolator: Interpolator::new(held, target.tile),
         colour_buffer: ColourBuffer::default(),
@@ -83,7 +78,7 @@ pub fn draw_until(
 /// Draws a whole scene.
 #[cfg(test)]
 pub fn draw_scene(held: &Held, target: &Target, colour: &mut [u32], depth: &mut [i32]) -> SortCounts {
-    draw_until(held, target, colour, depth, &|_| None).0
+    draw_until(held, target, colour, Depths::of(target, depth), &|_| None).0
 }
 
 /// The unit at work, sorts apart.
@@ -137,7 +132,11 @@ impl<'h> Unit<'h, '_> {
             self.counts.spans += spans_begun(triangle, &set_up.area, pixels);
         }
         self.won.clear();
-        self.array.compare(&set_up, &mut self.won);
+        let [covered, holes] = self.array.compare(&set_up, &mut self.won);
+        if let Item::Primitive(_, draw) = item {
+            let looked_up = self.held.draws[*draw as usize].looked_up(covered, holes);
+            self.counts.shading = self.counts.shading.plus(looked_up);
+        }
         for &place in &self.won {
             let before = self.array.identify(place, NONE);
             if before != NONE {
@@ -167,6 +166,7 @@ impl<'h> Unit<'h, '_> {
                         DepthRule::Test(test, shape.plane(self.format), below(self.format))
                     }),
                     seen: true,
+                    holes: draw.has_holes().then(|| colour_plane(shape, &draw.shade())),
                 }
             }
             Item::Clear { area, colour, depth } => SetUp {
@@ -174,6 +174,7 @@ impl<'h> Unit<'h, '_> {
                 area: *area,
                 depth: depth.map_or(DepthRule::Keep, DepthRule::Store),
                 seen: colour.is_some(),
+                holes: None,
             },
         }
     }
@@ -187,9 +188,10 @@ impl<'h> Unit<'h, '_> {
         let shaded = places.map(|(x, y)| {
             let mine = array.at(x, y);
             let seen = interpolator.colour(mine.id, &mine.ratios);
-            if let Some(Shaded { interpolated, .. }) = seen {
+            if let Some(Shaded { is_shaded, cost, .. }) = seen {
                 won += 1;
-                counts.shaded += u64::from(interpolated);
+                counts.shaded += u64::from(is_shaded);
+                counts.shading = counts.shading.plus(cost);
             }
             BankPixel { colour: seen.map(|seen| seen.colour).or(background), depth: mine.depth }
         });

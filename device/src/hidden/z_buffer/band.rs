@@ -5,19 +5,23 @@
 //! picture.
 
 use super::bins::{Bin, Bins};
+use super::punched::Punched;
 use super::tile::{TILE, Tile, TileCounts};
 use super::{DepthTest, kernel};
 use crate::geometry::plane::below;
 use crate::hidden::za::band::TileBlocks;
 use crate::pipeline::bands::{Plane, Sight, Surfaces};
-use crate::shading::plane::{ColourPlane, ColourSource, Interpolation};
+use crate::shading::parameters::Parameters;
+use crate::shading::pixel::{PixelShading, ShadingCounts};
+use crate::shading::plane::{ColourPlane, ColourSource, Interpolation, Shade};
 use crate::shading::resolve::{Planes, Row16, Row32, resolve_row};
 use fearless_simd::{Level, Simd, dispatch};
+use std::sync::Arc;
 use zga_abi::format::{DepthFormat, PixelFormat};
 use zga_firmware::checked::Rectangle;
 
 /// What all bands of a draw share.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Setting {
     /// Depth test; `None` where depth is not called for.
     pub test: Option<DepthTest>,
@@ -25,6 +29,10 @@ pub struct Setting {
     pub format: DepthFormat,
     /// Which colour interpolators are called.
     pub interpolation: Interpolation,
+    /// What interpolated colours go through.
+    pub shading: Option<Arc<DrawShading>>,
+    /// The path takes whole segments: holes of a texture cut them.
+    pub cuts_segments: bool,
     /// Pixels that may change, inside the target.
     pub scissor: Rectangle,
     /// Width of the target, pixels.
@@ -35,6 +43,17 @@ pub struct Setting {
     pub colour_pitch: usize,
     /// Words from a row of depths to the next.
     pub depth_pitch: usize,
+}
+
+/// What the colours of a batch of primitives go through.
+#[derive(Debug)]
+pub struct DrawShading {
+    /// The same for all.
+    pub pixel: Arc<PixelShading>,
+    /// Number of the first primitive in the draw.
+    pub first: u32,
+    /// What the vertices of each carry.
+    pub vertices: Vec<Parameters>,
 }
 
 /// Memory of one thread that draws bands.
@@ -57,6 +76,32 @@ impl Default for Scratch {
 }
 
 impl Setting {
+    /// How the pixels of primitive `number` of the draw get their colours.
+    #[must_use]
+    pub fn shade(&self, number: u32) -> Shade<'_> {
+        let pixel = self.shading.as_deref().map(|draw| (&draw.pixel, &draw.vertices[(number - draw.first) as usize]));
+        Shade { interpolation: self.interpolation, pixel }
+    }
+
+    /// Whether the texture has holes.
+    #[must_use]
+    pub fn has_holes(&self) -> bool {
+        self.shading.as_ref().is_some_and(|draw| draw.pixel.punch_through().is_some())
+    }
+
+    /// What looking for holes among so many fragments costs, where so many are holes; nothing without a texture that
+    /// has any.
+    #[must_use]
+    pub fn looked_up(&self, fragments: u64, holes: u64) -> ShadingCounts {
+        self.shading.as_ref().map_or(ShadingCounts::default(), |draw| draw.pixel.looked_up(fragments, holes))
+    }
+
+    /// Whether shading does anything for its pixels.
+    #[must_use]
+    pub fn is_shaded(&self) -> bool {
+        self.interpolation != Interpolation::Flat || self.shading.is_some()
+    }
+
     /// Draws band `band` of the shares' bins: rows `band * TILE ..` of frame buffer and Z buffer.
     #[must_use]
     pub fn draw_band(
@@ -99,7 +144,7 @@ impl Setting {
             if sight.is_kept() {
                 self.note(&scratch.ids, x as usize, top, counts.touched, &mut sight);
             }
-            dispatch!(level, simd => self.resolve(simd, bins, x as usize, top, counts.touched, colour, scratch));
+            self.resolve(level, bins, x as usize, top, counts.touched, colour, scratch);
             total = total.plus(counts);
         }
         total
@@ -109,7 +154,7 @@ impl Setting {
     fn note(&self, ids: &[u32; TILE * TILE], x: usize, top: i32, touched: [i32; 2], sight: &mut Sight<'_>) {
         // Rows of whole chunks, as long as the target is wide.
         let pitch = (self.width as usize).div_ceil(16);
-        let late = if self.interpolation == Interpolation::Flat { 0 } else { u16::MAX };
+        let late = if self.is_shaded() { u16::MAX } else { 0 };
         for row in touched[0]..touched[1] {
             let row = (row - top) as usize;
             let ids = ids[row * TILE..][..TILE].as_chunks::<16>().0;
@@ -124,12 +169,22 @@ impl Setting {
                 *winner |= seen;
                 *lates = (*lates & !seen) | (seen & late);
             }
+            if !sight.costs.rows.is_empty() {
+                let costs = sight.costs.rows[16 * first..16 * beyond].iter_mut();
+                for (id, cost) in ids.as_flattened().iter().zip(costs) {
+                    *cost = if *id == 0 { *cost } else { sight.cost };
+                }
+            }
         }
     }
 
     /// Visibility of one share's primitives in one tile.
     #[inline(always)]
     fn draw_bin<S: Simd>(&self, simd: S, bin: &Bin, first: u32, tile: &mut Tile<'_>) {
+        if self.has_holes() {
+            self.draw_punched(bin, first, tile);
+            return;
+        }
         match self.test {
             None => self.draw_bin_with::<S, { kernel::NO_DEPTH }>(simd, bin, first, DepthTest::ALWAYS, tile),
             Some(test) if below(self.format) != 32 => {
@@ -139,6 +194,27 @@ impl Setting {
                 self.draw_bin_with::<S, { kernel::LESS }>(simd, bin, first, test, tile);
             }
             Some(test) => self.draw_bin_with::<S, { kernel::GENERAL }>(simd, bin, first, test, tile),
+        }
+    }
+
+    /// The same where the texture has holes.
+    #[inline(always)]
+    fn draw_punched(&self, bin: &Bin, first: u32, tile: &mut Tile<'_>) {
+        let (below, cuts) = (below(self.format), self.cuts_segments);
+        for index in 0..bin.len() {
+            let (Some(source), Some(number)) = (bin.colours(index), bin.numbers.get(index)) else {
+                continue;
+            };
+            // Holes do not depend on the vertices' colours.
+            let colours = ColourPlane::Flat(0).shaded(source.first_place(), &self.shade(*number));
+            let punched = Punched { colours: &colours, id: first + index as u32, test: self.test, below, cuts };
+            if let Some((triangle, _)) = bin.triangles.get(index) {
+                punched.triangle(triangle, tile);
+            } else if let Some((line, _)) = bin.lines.get(index) {
+                punched.line(line, tile);
+            } else if let Some((point, _)) = bin.points.get(index) {
+                punched.point(point.pixel, point.z, tile);
+            }
         }
     }
 
@@ -163,10 +239,29 @@ impl Setting {
         }
     }
 
-    /// Colours of one tile; leaves the identifiers empty.
+    /// Colours of one tile; leaves the identifiers empty. One of two kernels: draws that call for interpolated colours
+    /// alone have one without code for more.
+    #[expect(clippy::too_many_arguments, reason = "a tile's memories; a struct would only be taken apart again")]
+    pub(in crate::hidden) fn resolve<'b, B: Iterator<Item = &'b Bin>>(
+        &self,
+        level: Level,
+        bins: impl Fn() -> B,
+        x: usize,
+        top: i32,
+        touched: [i32; 2],
+        colour: &mut [u32],
+        scratch: &mut Scratch,
+    ) {
+        if self.shading.is_some() {
+            dispatch!(level, simd => self.resolve_with::<_, _, true>(simd, bins, x, top, touched, colour, scratch));
+        } else {
+            dispatch!(level, simd => self.resolve_with::<_, _, false>(simd, bins, x, top, touched, colour, scratch));
+        }
+    }
+
     #[expect(clippy::too_many_arguments, reason = "inlined into its one caller at every SIMD level")]
     #[inline(always)]
-    pub(in crate::hidden) fn resolve<'b, S: Simd, B: Iterator<Item = &'b Bin>>(
+    fn resolve_with<'b, S: Simd, B: Iterator<Item = &'b Bin>, const SHADED: bool>(
         &self,
         simd: S,
         bins: impl Fn() -> B,
@@ -182,19 +277,22 @@ impl Setting {
         place.resize(bins().map(Bin::len).sum(), 0);
         // Pixels of a row up to its pitch: whole chunks, of which those beyond the target are never seen.
         let pixels = self.colour_pitch * 4 / self.pixel_format.bytes() as usize;
-        let mut planes = SeenPlanes { bins, interpolation: self.interpolation, place, planes };
+        let mut planes = SeenPlanes::<_, SHADED> { bins, setting: self, place, planes };
         for y in touched[0]..touched[1] {
             let row = (y - top) as usize;
             let ids = &mut ids[row * TILE..][..TILE.min(pixels - x)];
             let words = &mut colour[row * self.colour_pitch..][..self.colour_pitch];
-            let y = y as usize;
+            let (y, planes) = (y as usize, &mut planes);
             match self.pixel_format {
                 PixelFormat::Xrgb8888 => {
-                    resolve_row(simd, &mut Row32 { words, opaque: 0xFF00_0000 }, ids, x, y, &mut planes);
+                    resolve_row::<_, SHADED>(simd, &mut Row32 { words, opaque: 0xFF00_0000 }, ids, x, y, planes);
                 }
-                PixelFormat::Argb8888 => resolve_row(simd, &mut Row32 { words, opaque: 0 }, ids, x, y, &mut planes),
+                PixelFormat::Argb8888 => {
+                    resolve_row::<_, SHADED>(simd, &mut Row32 { words, opaque: 0 }, ids, x, y, planes);
+                }
                 PixelFormat::Rgb565 => {
-                    resolve_row(simd, &mut Row16 { pixels: bytemuck::cast_slice_mut(words) }, ids, x, y, &mut planes);
+                    let pixels = bytemuck::cast_slice_mut(words);
+                    resolve_row::<_, SHADED>(simd, &mut Row16 { pixels }, ids, x, y, planes);
                 }
             }
             ids.fill(0);
@@ -203,21 +301,21 @@ impl Setting {
 }
 
 /// Colour planes of a tile's primitives, each made when it is first seen.
-struct SeenPlanes<'a, F> {
+struct SeenPlanes<'a, F, const SHADED: bool> {
     bins: F,
-    interpolation: Interpolation,
+    setting: &'a Setting,
     place: &'a mut Vec<u32>,
     planes: &'a mut Vec<ColourPlane>,
 }
 
-impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B> SeenPlanes<'_, F> {
+impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B, const SHADED: bool> SeenPlanes<'_, F, SHADED> {
     /// The primitive that identifier `id` names: counted from 1 through the bins of the tile, of which
-    /// there is one for each share.
-    fn source(&self, id: u32) -> (&'b Bin, &'b ColourSource) {
+    /// there is one for each share. Its number in the draw means something where it is asked for.
+    fn source(&self, id: u32) -> (&'b Bin, &'b ColourSource, u32) {
         let mut index = id as usize - 1;
         for bin in (self.bins)() {
             match bin.colours(index) {
-                Some(source) => return (bin, source),
+                Some(source) => return (bin, source, bin.numbers.get(index).copied().unwrap_or(0)),
                 None => index -= bin.len(),
             }
         }
@@ -226,16 +324,22 @@ impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B> SeenPlanes<'_, F> {
     }
 }
 
-impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B> Planes for SeenPlanes<'_, F> {
+impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B, const SHADED: bool> Planes for SeenPlanes<'_, F, SHADED> {
     #[inline(always)]
     fn plane(&mut self, id: u32) -> &ColourPlane {
         let slot = id as usize - 1;
         if self.place[slot] == 0 {
-            let (bin, source) = self.source(id);
-            self.planes.push(if bin.triangles.is_empty() {
-                ColourPlane::line(source, self.interpolation)
+            let (bin, source, number) = self.source(id);
+            let interpolation = self.setting.interpolation;
+            let plane = if bin.triangles.is_empty() {
+                ColourPlane::line(source, interpolation)
             } else {
-                ColourPlane::triangle(source, self.interpolation)
+                ColourPlane::triangle(source, interpolation)
+            };
+            self.planes.push(if SHADED {
+                plane.shaded(source.first_place(), &self.setting.shade(number))
+            } else {
+                plane
             });
             self.place[slot] = self.planes.len() as u32;
         }

@@ -38,6 +38,8 @@ pub struct Bin {
     pub lines: Vec<Entry<Line>>,
     /// Points.
     pub points: Vec<Entry<Point>>,
+    /// Number of each primitive in the draw, where pixels are shaded by more than its colours; else empty.
+    pub numbers: Vec<u32>,
     /// Bytes of room when it was emptied last.
     room: usize,
 }
@@ -69,9 +71,11 @@ impl Bin {
         self.triangles.clear();
         self.lines.clear();
         self.points.clear();
+        self.numbers.clear();
         let room = self.triangles.capacity() * size_of::<Entry<Triangle>>()
             + self.lines.capacity() * size_of::<Entry<Line>>()
-            + self.points.capacity() * size_of::<Entry<Point>>();
+            + self.points.capacity() * size_of::<Entry<Point>>()
+            + self.numbers.capacity() * size_of::<u32>();
         room - std::mem::replace(&mut self.room, room)
     }
 }
@@ -130,8 +134,18 @@ impl Bins {
     }
 
     #[inline(always)]
-    fn bin<T>(&mut self, column: i32, row: i32, entries: fn(&mut Bin) -> &mut Vec<Entry<T>>) -> &mut Vec<Entry<T>> {
+    fn bin<T, const NUMBERED: bool>(
+        &mut self,
+        column: i32,
+        row: i32,
+        number: u32,
+        entries: fn(&mut Bin) -> &mut Vec<Entry<T>>,
+    ) -> &mut Vec<Entry<T>> {
         let tile = row as usize * self.columns + column as usize;
+        if NUMBERED {
+            self.tiles[tile].numbers.push(number);
+            self.bytes += size_of::<u32>();
+        }
         let entries = entries(&mut self.tiles[tile]);
         if entries.is_empty() {
             self.touched.push(tile as u32);
@@ -141,11 +155,44 @@ impl Bins {
     }
 }
 
-impl Sink for Bins {
-    fn masked(&mut self, _vertices: &[ScreenVertex; 3]) {}
+/// Bins that take primitives; `NUMBERED`: with their numbers in the draw, which only shading by more than colours asks
+/// for.
+#[derive(Debug)]
+pub struct BinSink<'a, const NUMBERED: bool>(pub &'a mut Bins);
+
+impl<const NUMBERED: bool> Sink for BinSink<'_, NUMBERED> {
+    fn masked(&mut self, _vertices: &[ScreenVertex; 3], _number: u32) {}
 
     #[inline(always)]
-    fn triangle(&mut self, t: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], _number: u32) {
+    fn triangle(&mut self, triangle: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], number: u32) {
+        self.0.take_triangle::<NUMBERED>(triangle, columns, vertices, number);
+    }
+
+    #[inline(always)]
+    fn line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: u32) {
+        self.0.take_line::<NUMBERED>(line, vertices, number);
+    }
+
+    #[inline(always)]
+    fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32) {
+        self.0.take_point::<NUMBERED>(point, vertex, number);
+    }
+
+    #[inline(always)]
+    fn full(&self) -> bool {
+        self.0.bytes >= LIMIT || self.0.pixels >= PIXEL_LIMIT
+    }
+}
+
+impl Bins {
+    #[inline(always)]
+    fn take_triangle<const NUMBERED: bool>(
+        &mut self,
+        t: &Triangle,
+        columns: [i32; 2],
+        vertices: &[ScreenVertex; 3],
+        number: u32,
+    ) {
         let area = self.area;
         let (left, right) = (columns[0].max(area[0]), columns[1].min(area[2]));
         let (top, bottom) = (t.rows[0].max(area[1]), t.rows[2].min(area[3]));
@@ -157,7 +204,7 @@ impl Sink for Bins {
         let (columns, rows) = ([left >> SHIFT, (right - 1) >> SHIFT], [top >> SHIFT, (bottom - 1) >> SHIFT]);
         if columns[0] == columns[1] {
             for row in rows[0]..=rows[1] {
-                self.bin(columns[0], row, |bin| &mut bin.triangles).push((*t, colours));
+                self.bin::<_, NUMBERED>(columns[0], row, number, |bin| &mut bin.triangles).push((*t, colours));
             }
             return;
         }
@@ -173,13 +220,14 @@ impl Sink for Bins {
             let (from, to) = (from.max(left), to.min(right));
             if from < to {
                 for column in from >> SHIFT..=(to - 1) >> SHIFT {
-                    self.bin(column, row, |bin| &mut bin.triangles).push((*t, colours));
+                    self.bin::<_, NUMBERED>(column, row, number, |bin| &mut bin.triangles).push((*t, colours));
                 }
             }
         }
     }
 
-    fn line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], _number: u32) {
+    #[inline(always)]
+    fn take_line<const NUMBERED: bool>(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: u32) {
         let area = self.area;
         let x_major = line.axis == Axis::X;
         let (along, across) =
@@ -196,21 +244,18 @@ impl Sink for Bins {
             if from <= to {
                 for minor in from >> SHIFT..=to >> SHIFT {
                     let (column, row) = if x_major { (major, minor) } else { (minor, major) };
-                    self.bin(column, row, |bin| &mut bin.lines).push((*line, colours));
+                    self.bin::<_, NUMBERED>(column, row, number, |bin| &mut bin.lines).push((*line, colours));
                 }
             }
         }
     }
 
-    fn point(&mut self, point: &Point, vertex: &ScreenVertex, _number: u32) {
+    #[inline(always)]
+    fn take_point<const NUMBERED: bool>(&mut self, point: &Point, vertex: &ScreenVertex, number: u32) {
         let ([x, y], area) = (point.pixel, self.area);
         if (area[0]..area[2]).contains(&x) && (area[1]..area[3]).contains(&y) {
             let colours = ColourSource::new(&[*vertex; 3]);
-            self.bin(x >> SHIFT, y >> SHIFT, |bin| &mut bin.points).push((*point, colours));
+            self.bin::<_, NUMBERED>(x >> SHIFT, y >> SHIFT, number, |bin| &mut bin.points).push((*point, colours));
         }
-    }
-
-    fn full(&self) -> bool {
-        self.bytes >= LIMIT || self.pixels >= PIXEL_LIMIT
     }
 }

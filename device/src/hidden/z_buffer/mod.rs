@@ -14,6 +14,7 @@
 pub mod band;
 pub mod bins;
 pub mod kernel;
+pub mod punched;
 pub mod specification;
 pub mod tile;
 pub mod uniform;
@@ -23,7 +24,6 @@ use zga_abi::Counter;
 use zga_abi::format::{DepthFunction, PixelFormat};
 use zga_firmware::checked::{Clear, DepthSurface, Rectangle, Surface, Target};
 
-use crate::shading::plane::Interpolation;
 use band::Setting;
 use tile::TileCounts;
 use uniform::Uniform;
@@ -102,9 +102,18 @@ pub fn charge(counts: &TileCounts, setting: &Setting, account: &mut Account) {
     account.add(Counter::ZWrites, if setting.test.is_some_and(|test| test.write) { counts.passed } else { 0 });
     account.add(Counter::ColourWrites, counts.passed);
     account.charge(Counter::CyclesZBuffer, Clocks(2 * counts.spans + reads + counts.passed));
-    if setting.interpolation != Interpolation::Flat {
-        account.add(Counter::ShadingPixels, counts.passed);
-        account.charge(Counter::CyclesShading, Clocks(counts.passed));
+    charge_shading(counts.passed, setting, account);
+    setting.looked_up(counts.covered, counts.holes).charge(account);
+}
+
+/// Charges the shading of `pixels` pixels of a draw whose fragments are shaded as soon as they pass.
+pub fn charge_shading(pixels: u64, setting: &Setting, account: &mut Account) {
+    if setting.is_shaded() {
+        account.add(Counter::ShadingPixels, pixels);
+        account.charge(Counter::CyclesShading, Clocks(pixels));
+    }
+    if let Some(shading) = &setting.shading {
+        shading.pixel.cost().times(pixels).charge(account);
     }
 }
 

@@ -12,15 +12,15 @@ use crate::geometry::assembly::Shape;
 use crate::geometry::plane::below;
 use crate::geometry::triangle::doubled_area;
 use crate::pipeline::bands::Sight;
-use crate::shading::plane::{ColourPlane, ColourSource, Interpolation};
+use crate::shading::plane::{ColourPlane, ColourSource, Shade};
 use crate::shading::resolve::{PixelRow, Row16, Row32};
 use zga_abi::format::PixelFormat;
 
-/// Draws primitives on whole surfaces, one after another.
+/// Draws primitives, each with its number in the draw, on whole surfaces, one after another.
 #[must_use]
 pub fn draw<'s>(
     setting: &Setting,
-    shapes: impl Iterator<Item = &'s Shape>,
+    shapes: impl Iterator<Item = (&'s Shape, u32)>,
     colour: &mut [u32],
     depth: &mut [i32],
 ) -> TileCounts {
@@ -31,26 +31,31 @@ pub fn draw<'s>(
 #[must_use]
 pub fn draw_noting<'s>(
     setting: &Setting,
-    shapes: impl Iterator<Item = &'s Shape>,
+    shapes: impl Iterator<Item = (&'s Shape, u32)>,
     colour: &mut [u32],
     depth: &mut [i32],
     sight: &mut Sight<'_>,
 ) -> TileCounts {
     let mut counts = TileCounts::default();
-    for shape in shapes {
-        primitive(setting, shape, colour, depth, sight, &mut counts);
+    for (shape, number) in shapes {
+        primitive(setting, shape, number, colour, depth, sight, &mut counts);
     }
     counts
 }
 
 /// The colour plane of a primitive.
 #[must_use]
-pub fn colour_plane(shape: &Shape, interpolation: Interpolation) -> ColourPlane {
-    match shape {
-        Shape::Triangle(_, v) => ColourPlane::triangle(&ColourSource::new(v), interpolation),
-        Shape::Line(_, v) => ColourPlane::line(&ColourSource::new(&[v[0], v[1], v[1]]), interpolation),
-        Shape::Point(_, v) => ColourPlane::Flat(v.colour),
-    }
+pub fn colour_plane(shape: &Shape, shade: &Shade<'_>) -> ColourPlane {
+    let source = match shape {
+        Shape::Triangle(_, v) => ColourSource::new(v),
+        Shape::Line(_, v) => ColourSource::new(&[v[0], v[1], v[1]]),
+        Shape::Point(_, v) => ColourSource::new(&[*v; 3]),
+    };
+    let plane = match shape {
+        Shape::Triangle(..) => ColourPlane::triangle(&source, shade.interpolation),
+        Shape::Line(..) | Shape::Point(..) => ColourPlane::line(&source, shade.interpolation),
+    };
+    plane.shaded(source.first_place(), shade)
 }
 
 /// Whether a primitive covers (or draws) pixel (`x`, `y`).
@@ -65,23 +70,34 @@ pub fn meets(shape: &Shape, x: i32, y: i32) -> bool {
 fn primitive(
     setting: &Setting,
     shape: &Shape,
+    number: u32,
     colour: &mut [u32],
     depth: &mut [i32],
     sight: &mut Sight<'_>,
     counts: &mut TileCounts,
 ) {
     let plane = shape.plane(setting.format);
-    let colours = colour_plane(shape, setting.interpolation);
+    let colours = colour_plane(shape, &setting.shade(number));
     let below = below(setting.format);
     let (rows, columns) = extent(shape, setting);
     for y in rows.0..rows.1 {
         let mut any = false;
+        // Runs of pixels without a hole, where these cut segments.
+        let (mut runs, mut inside) = (0, false);
         for x in columns.0..columns.1 {
             if !meets(shape, x, y) {
+                inside = false;
                 continue;
             }
             any = true;
             counts.covered += 1;
+            let hole = colours.is_hole(x, y);
+            runs += u32::from(!hole && !inside);
+            inside = !hole;
+            if hole {
+                counts.holes += 1;
+                continue;
+            }
             let (column, row) = (x as usize, y as usize);
             if let Some(test) = setting.test {
                 let z = plane.stored(plane.value(x, y), below);
@@ -104,7 +120,7 @@ fn primitive(
         }
         counts.spans += u64::from(any && matches!(shape, Shape::Triangle(..)));
         if let Some(tokens) = sight.tokens.rows.get_mut(y as usize) {
-            *tokens += u32::from(any);
+            *tokens += if setting.cuts_segments { runs } else { u32::from(any) };
         }
     }
 }

@@ -19,6 +19,8 @@ pub struct TileCounts {
     pub covered: u64,
     /// Fragments that passed the depth test.
     pub passed: u64,
+    /// Fragments that were holes of their texture.
+    pub holes: u64,
     /// First row and first row beyond where something was covered, pixels.
     pub touched: [i32; 2],
 }
@@ -31,6 +33,7 @@ impl TileCounts {
             spans: self.spans + other.spans,
             covered: self.covered + other.covered,
             passed: self.passed + other.passed,
+            holes: self.holes + other.holes,
             touched: self.touched,
         }
     }

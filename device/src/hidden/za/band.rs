@@ -94,7 +94,7 @@ impl ZaDraw {
             dispatch!(level, simd => tile.finish(simd));
             let (counts, touched) = (tile.events(), tile.pixels.counts.touched);
             own.blocks.leave(self, left, words);
-            dispatch!(level, simd => pixels.resolve(simd, bins, left, top, touched, colour, scratch));
+            pixels.resolve(level, bins, left, top, touched, colour, scratch);
             total = total.plus(counts);
         }
         scratch.blocks = Some(own);

@@ -40,12 +40,16 @@ use crate::shading::plane::{AffinePlane, ColourPlane};
 use zga_abi::format::ZaPrediction;
 use zga_firmware::checked::Rectangle;
 
-/// Draws primitives on whole surfaces, one after another.
+/// Draws primitives, each with its number in the draw, on whole surfaces, one after another.
 #[must_use]
-pub fn draw<'s>(draw: &ZaDraw, shapes: impl Iterator<Item = &'s Shape>, surfaces: &mut Surfaces<'_>) -> ZaCounts {
+pub fn draw<'s>(
+    draw: &ZaDraw,
+    shapes: impl Iterator<Item = (&'s Shape, u32)>,
+    surfaces: &mut Surfaces<'_>,
+) -> ZaCounts {
     let mut unit = Unit::new(draw);
-    for shape in shapes {
-        unit.load(shape);
+    for (shape, number) in shapes {
+        unit.load(shape, number);
         while unit.clock(surfaces) {}
     }
     unit.counts
@@ -93,7 +97,7 @@ struct Row {
 }
 
 /// Colours of a primitive.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Colours {
     /// Stepped: the plane, and its change for one pixel to the right.
     Stepped(AffinePlane, [i32; 4]),
@@ -167,10 +171,10 @@ impl<'d> Unit<'d> {
         self.state
     }
 
-    /// Takes a primitive from set-up; the unit must be idle, or what it was at is lost.
-    pub fn load(&mut self, shape: &Shape) {
+    /// Takes primitive `number` of the draw from set-up; the unit must be idle, or what it was at is lost.
+    pub fn load(&mut self, shape: &Shape, number: u32) {
         self.depths = Predictor::new(shape, self.draw.pixels.format);
-        self.colours = match colour_plane(shape, self.draw.pixels.interpolation) {
+        self.colours = match colour_plane(shape, &self.draw.pixels.shade(number)) {
             ColourPlane::Affine(plane) => {
                 let (here, right) = (plane.value(0, 0), plane.value(1, 0));
                 Colours::Stepped(plane, [0, 1, 2, 3].map(|k| right[k].wrapping_sub(here[k])))
@@ -459,6 +463,19 @@ impl<'d> Unit<'d> {
         self.counts.passed += 1;
     }
 
+    /// Whether the pixel visited is a hole of the texture.
+    fn is_hole(&self) -> bool {
+        matches!(&self.colours, Colours::Divided(plane) if plane.is_hole(self.x, self.y))
+    }
+
+    /// Counts a fragment, if there is one, that a texel is looked up for.
+    fn count_fragment(&mut self, row: Option<usize>) {
+        if row.is_some() && self.draw.pixels.has_holes() {
+            self.counts.fragments += 1;
+            self.counts.holes += u64::from(self.is_hole());
+        }
+    }
+
     fn put(&mut self, pixel: u32, surfaces: &mut Surfaces<'_>) {
         let pixels = &self.draw.pixels;
         put(surfaces.colour, pixels.pixel_format, pixels.colour_pitch, self.x as usize, self.y as usize, pixel);
@@ -481,7 +498,9 @@ impl<'d> Unit<'d> {
         let background = self.draw.background;
         let mut depth = background.depth;
         let row = self.row_here();
+        self.count_fragment(row);
         let passing = row.filter(|&row| self.draw.test().is_none_or(|test| test.passes(self.depth(row), depth)));
+        let passing = passing.filter(|_| !self.is_hole());
         match passing {
             Some(row) => {
                 if self.draw.test().is_some_and(|test| test.write) {
@@ -507,9 +526,11 @@ impl<'d> Unit<'d> {
     fn read_pixel(&mut self, surfaces: &Surfaces<'_>) {
         let stored = surfaces.depth[self.place()];
         self.counts.reads += 1;
-        if let Some(row) = self.row_here() {
+        let row = self.row_here();
+        self.count_fragment(row);
+        if let Some(row) = row {
             let z = self.depth(row);
-            if self.draw.test().is_some_and(|test| test.passes(z, stored)) {
+            if self.draw.test().is_some_and(|test| test.passes(z, stored)) && !self.is_hole() {
                 self.state = State::WritePixel;
                 return;
             }
@@ -522,8 +543,14 @@ impl<'d> Unit<'d> {
     fn write_pixel(&mut self, surfaces: &mut Surfaces<'_>) {
         let test = self.draw.test();
         // The run's pixels only come here.
-        if let Some(row) = self.row_here() {
-            self.write_colour(row, surfaces);
+        let row = self.row_here();
+        if test.is_none() {
+            self.count_fragment(row);
+        }
+        if let Some(row) = row {
+            if !self.is_hole() {
+                self.write_colour(row, surfaces);
+            }
             if test.is_some_and(|test| test.write) {
                 let z = self.depth(row);
                 surfaces.depth[self.place()] = z;

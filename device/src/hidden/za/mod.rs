@@ -89,11 +89,10 @@ mod walk;
 
 pub use grid::Grid;
 
-use super::z_buffer::DepthTest;
 use super::z_buffer::band::Setting;
+use super::z_buffer::{DepthTest, charge_shading};
 use crate::pipeline::bands::Counts;
 use crate::probe::account::{Account, Clocks};
-use crate::shading::plane::Interpolation;
 use zga_abi::Counter;
 use zga_abi::format::ZaPrediction;
 
@@ -110,7 +109,7 @@ pub struct Background {
 }
 
 /// What the Za unit knows of a draw.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct ZaDraw {
     /// What its pixels share.
     pub pixels: Setting,
@@ -165,6 +164,10 @@ pub struct Surfaces<'m> {
 pub struct ZaCounts {
     /// Runs of pixels of one triangle on one row.
     pub spans: u64,
+    /// Where the texture has holes: fragments that came to the test, those in blocks that were not bypassed.
+    pub fragments: u64,
+    /// Fragments among them that were holes.
+    pub holes: u64,
     /// Fragments that passed the depth test.
     pub passed: u64,
     /// Visits of cleared blocks.
@@ -193,6 +196,8 @@ impl ZaCounts {
     pub fn plus(self, other: ZaCounts) -> ZaCounts {
         ZaCounts {
             spans: self.spans + other.spans,
+            fragments: self.fragments + other.fragments,
+            holes: self.holes + other.holes,
             passed: self.passed + other.passed,
             initialised: self.initialised + other.initialised,
             bypassed: self.bypassed + other.bypassed,
@@ -232,12 +237,13 @@ impl ZaCounts {
         self.clocks += 1 + prediction;
     }
 
-    /// Counts the visit of an initialised block without a depth test.
+    /// Counts the visit of an initialised block without a depth test: `run` covered pixels, of which `painted` are no
+    /// holes.
     #[inline(always)]
-    pub fn count_painted(&mut self, run: u64) {
+    pub fn count_painted(&mut self, run: u64, painted: u64) {
         self.compared += 1;
-        self.passed += run;
-        self.colour_writes += run;
+        self.passed += painted;
+        self.colour_writes += painted;
         self.clocks += 1 + run;
     }
 
@@ -275,8 +281,6 @@ pub fn charge(counts: &ZaCounts, draw: &ZaDraw, account: &mut Account) {
     account.add(Counter::ZaPixelsBypassed, counts.pixels_bypassed);
     account.add(Counter::ZaBlocksCompared, counts.compared);
     account.charge(Counter::CyclesZa, Clocks(counts.clocks));
-    if draw.pixels.interpolation != Interpolation::Flat {
-        account.add(Counter::ShadingPixels, counts.passed);
-        account.charge(Counter::CyclesShading, Clocks(counts.passed));
-    }
+    charge_shading(counts.passed, &draw.pixels, account);
+    draw.pixels.looked_up(counts.fragments, counts.holes).charge(account);
 }

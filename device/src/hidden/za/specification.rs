@@ -13,20 +13,24 @@ use crate::hidden::z_buffer::specification::{colour_plane, extent, meets};
 use crate::shading::plane::ColourPlane;
 use zga_firmware::checked::Rectangle;
 
-/// Draws primitives on whole surfaces, one after another.
+/// Draws primitives, each with its number in the draw, on whole surfaces, one after another.
 #[must_use]
-pub fn draw<'s>(draw: &ZaDraw, shapes: impl Iterator<Item = &'s Shape>, surfaces: &mut Surfaces<'_>) -> ZaCounts {
+pub fn draw<'s>(
+    draw: &ZaDraw,
+    shapes: impl Iterator<Item = (&'s Shape, u32)>,
+    surfaces: &mut Surfaces<'_>,
+) -> ZaCounts {
     let mut counts = ZaCounts::default();
-    for shape in shapes {
-        primitive(draw, shape, surfaces, &mut counts);
+    for (shape, number) in shapes {
+        primitive(draw, shape, number, surfaces, &mut counts);
     }
     counts
 }
 
 /// Draws one primitive.
-fn primitive(draw: &ZaDraw, shape: &Shape, surfaces: &mut Surfaces<'_>, counts: &mut ZaCounts) {
+fn primitive(draw: &ZaDraw, shape: &Shape, number: u32, surfaces: &mut Surfaces<'_>, counts: &mut ZaCounts) {
     let primitive = Primitive {
-        colours: colour_plane(shape, draw.pixels.interpolation),
+        colours: colour_plane(shape, &draw.pixels.shade(number)),
         depths: Predictor::new(shape, draw.pixels.format),
     };
     let ((top, bottom), (left, right)) = extent(shape, &draw.pixels);
@@ -81,6 +85,7 @@ fn visit(
 ) {
     let (pixels, covered) = (grid::pixels(area), run.len() as u64);
     if surfaces.words[index] < 0 {
+        count_looked_up(draw, primitive, run, counts);
         fill_with_background(draw, area, surfaces);
         let passed = match draw.test() {
             None => paint(draw, primitive, run, surfaces),
@@ -91,8 +96,8 @@ fn visit(
         return;
     }
     let Some(test) = draw.test() else {
-        paint(draw, primitive, run, surfaces);
-        counts.count_painted(covered);
+        count_looked_up(draw, primitive, run, counts);
+        counts.count_painted(covered, paint(draw, primitive, run, surfaces));
         return;
     };
     let mut spent = 0;
@@ -104,11 +109,20 @@ fn visit(
             return;
         }
     }
+    count_looked_up(draw, primitive, run, counts);
     let passed = compare(draw, primitive, test, run, surfaces);
     if test.write {
         surfaces.words[index] = word(draw, area, surfaces);
     }
     counts.count_compared(test.write, pixels, covered, passed, spent);
+}
+
+/// Counts the texels that are looked up for holes.
+fn count_looked_up(draw: &ZaDraw, primitive: &Primitive, run: &[[i32; 2]], counts: &mut ZaCounts) {
+    if draw.pixels.has_holes() {
+        counts.fragments += run.len() as u64;
+        counts.holes += run.iter().filter(|[x, y]| primitive.colours.is_hole(*x, *y)).count() as u64;
+    }
 }
 
 /// What the block holds that nobody has drawn to.
@@ -125,11 +139,13 @@ fn fill_with_background(draw: &ZaDraw, area: &Rectangle, surfaces: &mut Surfaces
 
 /// The pixels get the primitive's colours, whatever their depth; returns how many there are.
 fn paint(draw: &ZaDraw, primitive: &Primitive, run: &[[i32; 2]], surfaces: &mut Surfaces<'_>) -> u64 {
-    for &[x, y] in run {
+    let mut painted = 0;
+    for &[x, y] in run.iter().filter(|[x, y]| !primitive.colours.is_hole(*x, *y)) {
+        painted += 1;
         let pixel = draw.pixels.pixel_format.encode(primitive.colours.colour(x, y).to_le_bytes());
         put(surfaces.colour, draw.pixels.pixel_format, draw.pixels.colour_pitch, x as usize, y as usize, pixel);
     }
-    run.len() as u64
+    painted
 }
 
 /// The pixels that pass the depth test get the primitive's colours and depths; returns how many do.
@@ -144,7 +160,7 @@ fn compare(
     for &[x, y] in run {
         let z = primitive.depth([x, y]);
         let stored = &mut surfaces.depth[y as usize * draw.pixels.depth_pitch + x as usize];
-        if test.passes(z, *stored) {
+        if test.passes(z, *stored) && !primitive.colours.is_hole(x, y) {
             if test.write {
                 *stored = z;
             }

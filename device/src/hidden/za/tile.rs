@@ -100,6 +100,9 @@ impl ZaTile<'_> {
         let words = if self.writes { visits.compared } else { 0 };
         let initial_depths = if self.draw.depth_buffer { visits.initialised_pixels } else { 0 };
         self.counts.plus(ZaCounts {
+            // Holes take another way.
+            fragments: 0,
+            holes: 0,
             spans: 0,
             passed: visits.initialised_passed + passed,
             initialised: visits.initialised,

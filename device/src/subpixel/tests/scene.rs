@@ -3,9 +3,10 @@
 use super::super::scene::{Base, ITEM_LIMIT, Item, Kind, Rule, Scene};
 use crate::geometry::ScreenVertex;
 use crate::hidden::z_buffer::DepthTest;
+use crate::shading::pixel::AlphaRule;
 use crate::shading::plane::Interpolation;
 use zga_abi::Effects;
-use zga_abi::format::DepthFunction;
+use zga_abi::format::{BlendMode, DepthFunction};
 use zga_firmware::checked::{Clear, DrawState, Rectangle};
 
 const AREA: Rectangle = Rectangle { x: 0, y: 0, right: 8, bottom: 8 };
@@ -20,14 +21,19 @@ fn state(effects: Effects, tag: u32) -> DrawState {
         scissor: AREA,
         line_width: 256,
         point_size: 256,
+        texture: None,
+        punch_through: None,
+        light: None,
+        fog: None,
+        blend: BlendMode::Alpha,
     }
 }
 
 /// Takes one triangle with an alpha.
 fn draw(scene: &mut Scene, effects: Effects, test: Option<DepthTest>, alpha: u32) {
-    if let Some(taken) = scene.draw(&state(effects, 0), test, Interpolation::Flat) {
+    if let Some(taken) = scene.draw(&state(effects, 0), test, Interpolation::Flat, AlphaRule::Vertices) {
         let vertices = [ScreenVertex { colour: alpha << 24, ..ScreenVertex::default() }; 3];
-        taken.items.push(Item { vertices, draw: taken.draw, kind: Kind::Masked });
+        taken.items.push(Item { vertices, draw: taken.draw, number: 0, kind: Kind::Masked });
     }
 }
 
@@ -74,12 +80,16 @@ fn clear_of_everything_forgets_and_of_a_part_is_an_item() {
 fn draws_that_leave_no_item_take_no_room() {
     let mut scene = Scene::default();
     for tag in 0..1000 {
-        assert!(scene.draw(&state(Effects::ANTI_ALIAS, tag), Some(DepthTest::LESS), Interpolation::Flat).is_some());
+        assert!(
+            scene
+                .draw(&state(Effects::ANTI_ALIAS, tag), Some(DepthTest::LESS), Interpolation::Flat, AlphaRule::Vertices)
+                .is_some()
+        );
     }
     assert_eq!(scene.draws.len(), 1);
     let never = DrawState { depth_function: DepthFunction::Never, ..state(Effects::ANTI_ALIAS, 0) };
     let test = Some(DepthTest::new(DepthFunction::Never, true));
-    assert!(scene.draw(&never, test, Interpolation::Flat).is_none());
+    assert!(scene.draw(&never, test, Interpolation::Flat, AlphaRule::Vertices).is_none());
 }
 
 #[test]

@@ -10,6 +10,7 @@ use crate::hidden::systolic::{SystolicCounts, charge, closed_form, draw_scene};
 use crate::hidden::z_buffer::band::Setting;
 use crate::hidden::z_buffer::specification;
 use crate::probe::account::Account;
+use crate::shading::pixel::ShadingCounts;
 use crate::shading::plane::Interpolation;
 use zga_abi::Counter;
 use zga_abi::format::{DepthFormat, Fidelity, HiddenSurface, PixelFormat, TokenColour};
@@ -72,7 +73,7 @@ pub(super) fn held(parts: &[Part], background: Background, format: DepthFormat) 
             }
         };
         if let Some(shape) = shape {
-            held.draws.push(*draw);
+            held.draws.push(draw.clone());
             held.items.push(Item::Primitive(shape, held.draws.len() as u32 - 1));
         }
     }
@@ -107,6 +108,8 @@ fn specified(held: &Held, target: &Target) -> Drawn {
         test: draw.test,
         format: target.depth_format,
         interpolation: draw.interpolation,
+        shading: None,
+        cuts_segments: false,
         scissor: draw.scissor,
         width,
         pixel_format: target.colour.format,
@@ -117,10 +120,10 @@ fn specified(held: &Held, target: &Target) -> Drawn {
     let clear = |area: &Rectangle, to: Option<u32>, z: Option<i32>, colour: &mut [u32], depth: &mut [i32]| {
         for (y, x) in (area.y..area.bottom).flat_map(|y| (area.x..area.right).map(move |x| (y, x))) {
             if let Some(to) = to {
-                let draw = HeldDraw { test: None, interpolation: Interpolation::Flat, scissor: whole };
+                let draw = HeldDraw { test: None, interpolation: Interpolation::Flat, shading: None, scissor: whole };
                 let vertex = ScreenVertex { x: x as i32 * 256, y: y as i32 * 256, colour: to, ..Default::default() };
                 let point = Shape::Point(Point { pixel: [x as i32, y as i32], z: 0 }, vertex);
-                let counts = specification::draw(&setting(&draw), std::iter::once(&point), colour, &mut []);
+                let counts = specification::draw(&setting(&draw), std::iter::once((&point, 0)), colour, &mut []);
                 assert_eq!(counts.passed, 1);
             }
             if let Some(z) = z {
@@ -143,7 +146,7 @@ fn specified(held: &Held, target: &Target) -> Drawn {
             }
             Item::Primitive(shape, draw) => {
                 let draw = &held.draws[*draw as usize];
-                let drawn = specification::draw(&setting(draw), std::iter::once(shape), &mut colour, &mut depth);
+                let drawn = specification::draw(&setting(draw), std::iter::once((shape, 0)), &mut colour, &mut depth);
                 spans += drawn.spans;
                 (&draw.scissor, Some(shape))
             }
@@ -181,6 +184,7 @@ fn specified(held: &Held, target: &Target) -> Drawn {
         writes: if target.depth.is_some() { pixels } else { 0 },
         colours: if held.background.colour.is_some() { pixels } else { seen(&|winner| winner.is_some()) },
         shaded: seen(&|winner| *winner == Some(true)),
+        shading: ShadingCounts::default(),
     };
     if target.depth.is_none() {
         depth.clear();
@@ -206,6 +210,7 @@ fn draws(width: u32, height: u32) -> impl Strategy<Value = HeldDraw> {
     (test, interpolation, rectangles(width, height)).prop_map(|(test, interpolation, scissor)| HeldDraw {
         test,
         interpolation,
+        shading: None,
         scissor,
     })
 }
@@ -300,7 +305,16 @@ fn scene_empty_is_refreshed_line_by_line() {
 
 #[test]
 fn charge_counts_stand_in_their_counters() {
-    let counts = SystolicCounts { tokens: 1, clocks: 20, spans: 3, reads: 4, writes: 5, colours: 6, shaded: 70 };
+    let counts = SystolicCounts {
+        tokens: 1,
+        clocks: 20,
+        spans: 3,
+        reads: 4,
+        writes: 5,
+        colours: 6,
+        shaded: 70,
+        ..SystolicCounts::default()
+    };
     let mut account = Account::default();
 
     charge(&counts, &mut account);

@@ -21,6 +21,7 @@ use zga_firmware::checked::Rectangle;
 const DRAW: HeldDraw = HeldDraw {
     test: Some(DepthTest::LESS),
     interpolation: Interpolation::Flat,
+    shading: None,
     scissor: Rectangle { x: 0, y: 0, right: 24, bottom: 16 },
 };
 
@@ -145,7 +146,7 @@ fn scene_of_equal_depths_shows_the_earlier_for_less_and_the_later_for_less_equal
             Made::Triangle(v.map(|v| ScreenVertex { colour: 0xFF00_0000 | colour, ..v }))
         };
         let target = target([24, 16], [8, 8], PixelFormat::Argb8888, DepthFormat::default(), false);
-        let scene = scene(target, &[(made(1), draw), (made(2), draw)], [Some(0), None]);
+        let scene = scene(target, &[(made(1), draw.clone()), (made(2), draw)], [Some(0), None]);
         let mut picture = Picture::before(&scene.target);
         let _ = draw_scene(&scene.held, &scene.target, &mut picture.colour, &mut picture.depth);
         assert_eq!(picture.colour[0], PixelFormat::Argb8888.encode([seen, 0, 0, 255]));
@@ -192,6 +193,7 @@ fn charge_adds_every_count_and_both_accounts() {
         colours: 10,
         shaded: 11,
         clocks: 12,
+        ..SortCounts::default()
     };
     let mut account = Account::default();
     charge(&counts, &mut account);

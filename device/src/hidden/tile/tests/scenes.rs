@@ -117,6 +117,7 @@ fn draw(size: [u32; 2]) -> impl Strategy<Value = HeldDraw> {
     (test, interpolation, scissor(size)).prop_map(|(test, interpolation, scissor)| HeldDraw {
         test,
         interpolation,
+        shading: None,
         scissor,
     })
 }
@@ -155,7 +156,7 @@ pub fn scene(target: Target, items: &[(Made, HeldDraw)], background: [Option<u32
                 held.clear(false, draw.scissor, colour, (planes & 2 == 0).then_some(*depth as i32));
             }
         }
-        held.add(*draw, &list);
+        held.add(draw, &list, |_| None);
     }
     Scene { target, held }
 }
@@ -238,6 +239,8 @@ pub fn reference(scene: &Scene) -> Reference {
         test: draw.test,
         format: target.depth_format,
         interpolation: draw.interpolation,
+        shading: None,
+        cuts_segments: false,
         scissor: draw.scissor,
         width: surface.width,
         pixel_format: surface.format,
@@ -269,16 +272,16 @@ pub fn reference(scene: &Scene) -> Reference {
                 let setting = setting(draw);
                 // On a transparent sheet, with depths of its own: where it passes.
                 let mut sheet = vec![0; width * height];
-                let on_sheet = Setting { pixel_format: PixelFormat::Argb8888, colour_pitch: width, ..setting };
+                let on_sheet = Setting { pixel_format: PixelFormat::Argb8888, colour_pitch: width, ..setting.clone() };
                 let mut depth = picture.depth.clone();
-                let counts = specification::draw(&on_sheet, [shape].into_iter(), &mut sheet, &mut depth);
+                let counts = specification::draw(&on_sheet, [(shape, 0)].into_iter(), &mut sheet, &mut depth);
                 pixels.spans += counts.spans;
                 for (pixel, seen) in sheet.iter().zip(&mut seen) {
                     if *pixel != 0 {
                         *seen = (true, draw.interpolation != Interpolation::Flat);
                     }
                 }
-                let one = [shape].into_iter();
+                let one = [(shape, 0)].into_iter();
                 let again = specification::draw(&setting, one, &mut picture.colour, &mut picture.depth);
                 assert_eq!(again, counts);
             }

@@ -4,7 +4,7 @@ use super::random::{Figure, figure, rectangle, state};
 use super::*;
 use crate::geometry::assembly::Sink;
 use crate::hidden::z_buffer::band::Scratch;
-use crate::hidden::z_buffer::bins::Bins;
+use crate::hidden::z_buffer::bins::{BinSink, Bins};
 use crate::hidden::z_buffer::tile::TILE;
 use fearless_simd::Level;
 use proptest::prelude::*;
@@ -23,6 +23,7 @@ fn levels() -> Vec<Level> {
 
 /// Puts a primitive into bins.
 fn bin(shape: &Shape, bins: &mut Bins, format: DepthFormat) {
+    let mut bins = BinSink::<false>(bins);
     match shape {
         Shape::Triangle(_, v) => {
             let (triangle, columns) = Triangle::new(v, format).expect("it was one before");
@@ -126,7 +127,7 @@ fn check(
         prop_assert!(draw.fast());
         let shapes: Vec<Shape> = figures.iter().filter_map(|figure| figure.shape(frame.depth_format)).collect();
         let begun = memory.clone();
-        let counts = specification::draw(&draw, shapes.iter(), &mut memory.surfaces());
+        let counts = specification::draw(&draw, shapes.iter().zip(0..), &mut memory.surfaces());
         for level in levels() {
             let mut fast = begun.clone();
             let fast_counts = fast_draw(&draw, level, shares, &shapes, &mut fast);

@@ -74,6 +74,8 @@ fn za_draw(frame: &Frame, background: Background, state: &State) -> ZaDraw {
             test: state.function.map(|function| DepthTest::new(function, state.write)),
             format: frame.depth_format,
             interpolation: state.interpolation,
+            shading: None,
+            cuts_segments: false,
             scissor: state.scissor,
             width: frame.grid.size[0],
             pixel_format: frame.pixel_format,
@@ -105,15 +107,15 @@ fn point(v: ScreenVertex) -> Shape {
 
 /// The plain Z buffer's picture and depths.
 fn z_buffer_draw(draw: &ZaDraw, shape: &Shape, memory: &mut Memory) -> z_buffer::tile::TileCounts {
-    z_buffer::specification::draw(&draw.pixels, std::iter::once(shape), &mut memory.colour, &mut memory.depth)
+    z_buffer::specification::draw(&draw.pixels, std::iter::once((shape, 0)), &mut memory.colour, &mut memory.depth)
 }
 
 fn specification_draw(draw: &ZaDraw, shape: &Shape, memory: &mut Memory) -> ZaCounts {
-    specification::draw(draw, std::iter::once(shape), &mut memory.surfaces())
+    specification::draw(draw, std::iter::once((shape, 0)), &mut memory.surfaces())
 }
 
 fn clocked_draw(draw: &ZaDraw, shape: &Shape, memory: &mut Memory) -> ZaCounts {
-    clocked::draw(draw, std::iter::once(shape), &mut memory.surfaces())
+    clocked::draw(draw, std::iter::once((shape, 0)), &mut memory.surfaces())
 }
 
 /// Words that are neither cleared nor the exact maximum of their blocks.

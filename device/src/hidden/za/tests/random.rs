@@ -296,7 +296,7 @@ proptest! {
             let draw = za_draw(&frame, background, &state);
             let mut memory = Memory::poisoned(&frame, 0);
             let shapes: Vec<_> = figures.iter().filter_map(|figure| figure.shape(frame.depth_format)).collect();
-            let counts = specification::draw(&draw, shapes.iter(), &mut memory.surfaces());
+            let counts = specification::draw(&draw, shapes.iter().zip(0..), &mut memory.surfaces());
             pixels.push((counts.bypassed, counts.pixels_bypassed, memory));
         }
         prop_assert!(pixels[0].0 <= pixels[1].0 && pixels[1].0 <= pixels[2].0);

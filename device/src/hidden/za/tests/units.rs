@@ -137,7 +137,7 @@ fn worked_example_states_come_in_the_published_order() {
     let mut unit = clocked::Unit::new(&draw);
     let mut states = Vec::new();
 
-    unit.load(&surface(8, 96, [219, 131], GREEN, format16()));
+    unit.load(&surface(8, 96, [219, 131], GREEN, format16()), 0);
     states.push(unit.state());
     while unit.clock(&mut memory.surfaces()) {
         states.push(unit.state());
@@ -303,6 +303,8 @@ fn charge_puts_each_count_into_its_counter() {
     let state = State { interpolation: Interpolation::Affine, ..state(&frame, ZaPrediction::BlockLength) };
     let draw = za_draw(&frame, background(), &state);
     let counts = ZaCounts {
+        fragments: 0,
+        holes: 0,
         spans: 1,
         passed: 2,
         initialised: 3,
