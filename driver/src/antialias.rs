@@ -1,4 +1,4 @@
-//! Anti-aliasing: samples of a pixel, widths of lines and points, translucent layers.
+//! Anti-aliasing: samples of a pixel, widths of lines and points.
 //!
 //! Duties: checks the settings, wants the registers that BEGIN_SCENE samples, and says which effects a draw calls
 //! for. Inputs from: the user. Outputs to: [`Driver::begin_scene`], every draw. A scene has a grid from its begin
@@ -51,12 +51,11 @@ pub(crate) struct AntialiasState {
     pub line_width: u32,
     /// u8.8, pixels.
     pub point_size: u32,
-    pub blend: bool,
 }
 
 impl AntialiasState {
     pub const fn new() -> AntialiasState {
-        AntialiasState { setting: None, line_width: 0x100, point_size: 0x100, blend: false }
+        AntialiasState { setting: None, line_width: 0x100, point_size: 0x100 }
     }
 }
 
@@ -114,22 +113,6 @@ impl<B: Bus> Driver<B> {
         Ok(())
     }
 
-    /// Whether the draws that follow call for the effect `blend`: what they draw with an alpha below 255 is a
-    /// layer over what lies behind it, whatever comes first. False after opening.
-    ///
-    /// Layers are composed in the lists of the sub-pixel unit, so such draws need a scene with a grid: see
-    /// [`Driver::set_antialias`]. In other scenes they end with [`DriverError::NoGrid`].
-    ///
-    /// # Errors
-    /// [`DriverError::Unsupported`] for `true` on a card that cannot blend.
-    pub fn set_blend(&mut self, blend: bool) -> Result<(), DriverError> {
-        if blend {
-            self.has_effect(Effects::BLEND, "translucency")?;
-        }
-        self.state.antialias.blend = blend;
-        Ok(())
-    }
-
     /// Wants what begin scene samples; says whether the scene has a grid.
     pub(crate) fn want_antialias(&mut self) -> bool {
         let setting = self.state.antialias.setting;
@@ -143,28 +126,15 @@ impl<B: Bus> Driver<B> {
         setting.is_some()
     }
 
-    /// The sub-pixel unit's effects that a draw in `scene` calls for; wants widths where they count.
-    pub(crate) fn want_masks(&mut self, call: &'static str, scene: &Scene) -> Result<Effects, DriverError> {
-        let AntialiasState { setting, line_width, point_size, blend } = self.state.antialias;
-        if blend && !scene.grid {
-            return Err(DriverError::NoGrid { call });
-        }
+    /// The sub-pixel unit's effect, if a draw in `scene` calls for it; wants widths where they count.
+    pub(crate) fn want_masks(&mut self, scene: &Scene) -> Effects {
+        let AntialiasState { setting, line_width, point_size } = self.state.antialias;
         let masks = scene.grid && setting.is_some();
         if masks {
             self.registers.want(Reg::LineWidth, &[line_width]);
             self.registers.want(Reg::PointSize, &[point_size]);
         }
-        let mut effects = Effects::empty();
-        effects.set(Effects::ANTI_ALIAS, masks);
-        effects.set(Effects::BLEND, blend);
-        Ok(effects)
-    }
-
-    fn has_effect(&self, effect: Effects, what: &'static str) -> Result<(), DriverError> {
-        if self.info.effects.contains(effect) {
-            return Ok(());
-        }
-        Err(DriverError::Unsupported { what, register: "CAPABILITY_EFFECTS", found: self.info.effects.bits() })
+        if masks { Effects::ANTI_ALIAS } else { Effects::empty() }
     }
 }
 

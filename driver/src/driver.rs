@@ -7,6 +7,7 @@ use zga_abi::bus::{Bus, MEMORY_BASE};
 use zga_abi::packet::Opcode;
 use zga_abi::registers::Reg;
 
+use crate::effects::TextureRecord;
 use crate::info::CardInfo;
 use crate::memory::{Alignment, Allocation, MemoryError, VideoMemory};
 use crate::state::State;
@@ -51,7 +52,11 @@ pub struct Driver<B: Bus> {
     pub(crate) state: State,
     pub(crate) targets: BTreeMap<u32, TargetState>,
     pub(crate) next_target: u32,
+    pub(crate) textures: BTreeMap<u32, TextureRecord>,
+    pub(crate) next_texture: u32,
     pub(crate) scene: Option<Scene>,
+    /// Given back, but the open scene may read it until its end.
+    pub(crate) scene_memory: Vec<Allocation>,
     pub(crate) capture_area: Option<Allocation>,
     pub(crate) shown: Option<(u32, u32)>,
     pub(crate) probe_area: Option<Allocation>,
@@ -113,7 +118,10 @@ impl<B: Bus> Driver<B> {
             state: State::new(),
             targets: BTreeMap::new(),
             next_target: 0,
+            textures: BTreeMap::new(),
+            next_texture: 0,
             scene: None,
+            scene_memory: Vec::new(),
             capture_area: None,
             shown: None,
             probe_area: None,
@@ -288,22 +296,19 @@ impl<B: Bus> Driver<B> {
         self.queue.packet(&mut self.bus, opcode, parts)
     }
 
-    /// Encodes a packet that needs a scene. An error in `state` that is only of the sending does not keep it
-    /// back: what was encoded before it waits as well.
+    /// Encodes a packet that needs a scene. An error in `sent`, of the sending of its registers, does not keep it back:
+    /// what was encoded before it waits as well.
     pub(crate) fn encode_in_scene(
         &mut self,
         call: &'static str,
-        state: Result<(), DriverError>,
+        sent: Result<(), DriverError>,
         opcode: Opcode,
         parts: &[&[u32]],
     ) -> Result<(), DriverError> {
-        if matches!(state, Err(DriverError::View(_) | DriverError::OutsideScene { .. } | DriverError::NoGrid { .. })) {
-            return state;
-        }
         self.adopt_recovered();
         match self.open_scene(call) {
-            Ok(_) => state.and(self.encode(opcode, parts)),
-            Err(lost) => state.and(Err(lost)),
+            Ok(_) => sent.and(self.encode(opcode, parts)),
+            Err(lost) => sent.and(Err(lost)),
         }
     }
 

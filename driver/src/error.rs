@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::bitmap::ImageError;
 use crate::memory::MemoryError;
 use crate::submit::CardFault;
 use crate::view::ViewError;
@@ -54,6 +55,9 @@ pub enum DriverError {
     /// Video memory cannot give what was asked for, or the handle is not valid.
     #[error(transparent)]
     Memory(#[from] MemoryError),
+    /// The bitmap unit cannot do that: a rectangle, a format or an overlap.
+    #[error(transparent)]
+    Image(#[from] ImageError),
     /// The camera, the object transform or the decal slope has no meaning.
     #[error(transparent)]
     View(#[from] ViewError),
@@ -103,17 +107,57 @@ pub enum DriverError {
         /// The method called.
         call: &'static str,
     },
-    /// Translucency needs a scene whose pixels have samples.
-    #[error("{call} with blend in a scene without a sub-pixel grid: call set_antialias before begin_scene")]
-    NoGrid {
-        /// The method called.
-        call: &'static str,
-    },
     /// The target was made by another driver, or is gone.
     #[error("target {id} is not known to this driver")]
     UnknownTarget {
         /// Number of the target.
         id: u32,
+    },
+    /// The texture was made by another driver, or is gone.
+    #[error("texture {id} is not known to this driver")]
+    UnknownTexture {
+        /// Number of the texture.
+        id: u32,
+    },
+    /// A picture has not the size of its texture.
+    #[error("{texels} texels for a texture of {width} x {height}")]
+    TexelCount {
+        /// Texels given.
+        texels: usize,
+        /// Width of the texture, texels.
+        width: u32,
+        /// Height of the texture, texels.
+        height: u32,
+    },
+    /// A picture has more colours than the palette of its texture.
+    #[error("the picture has more than {most} colours: a {format} texture needs upload_texture_with_palette")]
+    TooManyColours {
+        /// Format of the texture.
+        format: &'static str,
+        /// Colours of its palette.
+        most: usize,
+    },
+    /// A light has a number without meaning.
+    #[error("light {light}: {field} is {found}, expected {expected}")]
+    BadLight {
+        /// Number of the light, from 0.
+        light: usize,
+        /// Which number.
+        field: &'static str,
+        /// Its value.
+        found: String,
+        /// What it can be.
+        expected: &'static str,
+    },
+    /// The lists of vertices have different lengths.
+    #[error("{found} {list} for {expected} vertices")]
+    ListLength {
+        /// Which list.
+        list: &'static str,
+        /// Its length.
+        found: usize,
+        /// Number of vertices.
+        expected: usize,
     },
     /// The target has no Z buffer.
     #[error("target {id} has no Z buffer")]

@@ -2,7 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`Driver`] | the card: opening, submission, fences, memory; scenes, state, hidden-surface paths, anti-aliasing, drawing, capture, probe |
+//! | [`Driver`] | the card: opening, submission, fences, memory; scenes, state, hidden-surface paths, anti-aliasing, textures, lights, fog, blending, drawing, capture, probe; images and the bitmap unit |
 //! | [`view`] | cameras and the decal transform |
 //! | [`memory`] | the video memory allocator |
 //! | [`bus`] | a bus model for tests, a bus that records |
@@ -52,10 +52,12 @@
 //! ```
 
 mod antialias;
+mod bitmap;
 pub mod bus;
 mod capture;
 mod draw;
 mod driver;
+mod effects;
 mod error;
 mod hidden;
 mod info;
@@ -69,9 +71,11 @@ pub mod view;
 mod warning;
 
 pub use antialias::Antialias;
+pub use bitmap::{Drawable, Image, ImageError, Placement, Raster};
 pub use capture::{Frame, frame_hash, hash_text};
-pub use draw::{Curve, MeshBuffer, Vertex};
+pub use draw::{Curve, MeshBuffer, Vertex, Vertices};
 pub use driver::{Driver, DriverOptions};
+pub use effects::{Blend, Fog, FogCurve, Light, LightSource, Material, Texture, TextureOptions, TextureState};
 pub use error::DriverError;
 pub use hidden::{SystolicVariant, ZaSettings};
 pub use info::{CardInfo, Counters};

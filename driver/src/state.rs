@@ -4,9 +4,11 @@ use glam::DMat4;
 use zga_abi::Effects;
 use zga_abi::bus::Bus;
 use zga_abi::format::DepthFunction;
+use zga_abi::packet::DrawFlags;
 use zga_abi::registers::Reg;
 
 use crate::antialias::AntialiasState;
+use crate::effects::EffectState;
 use crate::hidden::HiddenState;
 use crate::view::{Camera, Decal, Matrix, camera, finite};
 use crate::{DecalInfo, Driver, DriverError, Target, Warning};
@@ -39,6 +41,7 @@ pub(crate) struct State {
     pub depth_write: bool,
     pub hidden: HiddenState,
     pub antialias: AntialiasState,
+    pub effects: EffectState,
     pub subpixel_bits: u32,
     pub scissor: [u32; 2],
     pub material: u32,
@@ -59,6 +62,7 @@ impl State {
             depth_write: true,
             hidden: HiddenState::new(),
             antialias: AntialiasState::new(),
+            effects: EffectState::new(),
             subpixel_bits: 8,
             scissor: NO_SCISSOR,
             material: u32::MAX,
@@ -83,6 +87,7 @@ impl<B: Bus> Driver<B> {
         camera.check()?;
         self.state.camera = camera;
         self.state.matrices_changed();
+        self.state.effects.camera_changed();
         Ok(())
     }
 
@@ -195,19 +200,30 @@ impl<B: Bus> Driver<B> {
         self.send_registers()
     }
 
-    /// Sends the state a draw needs. `gouraud`: colours differ within a primitive.
-    pub(crate) fn prepare_draw(&mut self, call: &'static str, gouraud: bool) -> Result<(), DriverError> {
+    /// Sends the state that a draw of such vertices needs. `gouraud`: their colours differ within a primitive.
+    ///
+    /// # Errors
+    /// Outer: nothing can be drawn. Inner: of the sending only; the draw must follow.
+    pub(crate) fn prepare_draw(
+        &mut self,
+        call: &'static str,
+        flags: DrawFlags,
+        gouraud: bool,
+    ) -> Result<Result<(), DriverError>, DriverError> {
+        // May wait for memory, and so meet a fault: before anything is wanted.
+        let met = self.place_lights(flags)?;
         self.adopt_recovered();
-        let scene = self.open_scene(call)?;
+        let scene = match self.open_scene(call) {
+            Ok(scene) => scene,
+            Err(lost) => return Err(met.err().unwrap_or(lost)),
+        };
         let (width, height, depth) = (scene.width, scene.height, scene.depth);
         self.compose_matrices(width, height, depth)?;
-        let mut effects = self.want_masks(call, &scene)?;
+        let mut effects = self.want_masks(&scene) | self.want_effects(flags, gouraud);
         let state = &self.state;
         let tests_depth = depth.is_some() && (state.depth_function != DepthFunction::Always || state.depth_write);
         let begins_far = tests_depth && !scene.depth_known;
         effects.set(Effects::DEPTH, tests_depth);
-        effects.set(Effects::GOURAUD, gouraud);
-        effects.set(Effects::PERSPECTIVE, gouraud && state.camera.is_perspective());
         effects.set(Effects::DECAL, state.decal.is_some());
         let control = state.depth_function.code() | if state.depth_write { DEPTH_WRITE } else { 0 };
         let [minimum, maximum] = state.scissor;
@@ -219,7 +235,7 @@ impl<B: Bus> Driver<B> {
         if begins_far {
             self.warn(Warning::DepthBeginsFar { path: scene.path });
         }
-        self.send_registers()
+        Ok(met.and(self.send_registers()))
     }
 
     /// Composes the matrices if they are due.

@@ -10,7 +10,7 @@ use crate::memory::{Alignment, Allocation};
 use crate::{Driver, DriverError};
 
 /// Largest width and height in pixels.
-const MOST_PIXELS: u32 = 16384;
+pub(crate) const MOST_PIXELS: u32 = 16384;
 
 /// What a target is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,6 +79,11 @@ impl TargetState {
     pub const fn frames(&self) -> usize {
         self.buffers.len()
     }
+
+    /// First byte and pitch of the frame buffer that is drawn to.
+    pub fn frame_surface(&self) -> (u32, u32) {
+        (self.buffers[self.back].address(), self.pitch)
+    }
 }
 
 /// The scene that is open.
@@ -101,7 +106,7 @@ pub(crate) struct Scene {
 ///
 /// The same columns of rows a multiple of 4096 apart fall into the same set of a host's first-level cache
 /// (64 sets of 64 bytes): a tile of more rows than the set has ways would evict itself.
-const fn pitch_of(bytes: u32) -> u32 {
+pub(crate) const fn pitch_of(bytes: u32) -> u32 {
     let pitch = bytes.next_multiple_of(64);
     if pitch.is_multiple_of(4096) { pitch + 64 } else { pitch }
 }
@@ -250,7 +255,9 @@ impl<B: Bus> Driver<B> {
     pub fn end_scene(&mut self) -> Result<(), DriverError> {
         self.adopt_recovered();
         let scene = self.scene.take().ok_or(DriverError::OutsideScene { call: "end_scene" })?;
-        if scene.lost { Ok(()) } else { self.encode(Opcode::EndScene, &[]) }
+        let ended = if scene.lost { Ok(()) } else { self.encode(Opcode::EndScene, &[]) };
+        let freed = self.free_scene_memory();
+        ended.and(freed)
     }
 
     /// Shows what was drawn to `target` from the next vertical blank on. With two frame buffers the next
@@ -283,8 +290,7 @@ impl<B: Bus> Driver<B> {
     /// [`DriverError::UnknownTarget`].
     pub fn target_surfaces(&self, target: &Target) -> Result<[Option<(u32, u32)>; 2], DriverError> {
         let state = self.target_state(target)?;
-        let colour = (state.buffers[state.back].address(), state.pitch);
-        Ok([Some(colour), state.depth.as_ref().map(|surface| (surface.address(), state.depth_pitch))])
+        Ok([Some(state.frame_surface()), state.depth.as_ref().map(|surface| (surface.address(), state.depth_pitch))])
     }
 
     /// What is known of a target.

@@ -164,19 +164,12 @@ fn blend_in_a_scene_with_a_grid_calls_for_layers() {
 }
 
 #[test]
-fn blend_without_a_grid_is_refused_by_the_draw_and_the_scene_goes_on() {
+fn blend_without_a_grid_calls_for_layers_too() {
     let mut driver = driver();
     let target = target(&mut driver);
-    driver.set_blend(true).expect("known with the scene");
-    driver.begin_scene(&target).expect("begins");
-    let refused = driver.draw_triangle(triangle(RED)).expect_err("no grid").to_string();
-    assert_eq!(refused, "draw with blend in a scene without a sub-pixel grid: call set_antialias before begin_scene");
-    driver.set_blend(false).expect("possible");
-    driver.draw_triangle(triangle(RED)).expect("draws");
-    driver.end_scene().expect("ends");
-    driver.finish().expect("done");
-    let sent = opcodes(&driver.bus_mut().take_packets());
-    assert_eq!(sent.iter().filter(|opcode| **opcode == 0x10).count(), 1);
+    driver.set_blend(true).expect("there");
+    scene(&mut driver, &target).expect("draws");
+    assert_eq!(driver.bus().register(EFFECTS), DEPTH | BLEND);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use zga_abi::bus::{Bus, MEMORY_BASE};
 use zga_abi::format::Topology;
 use zga_abi::packet::{DrawFlags, Opcode};
 
-use super::{Vertex, check_whole, needs_gouraud};
+use super::{Vertex, Vertices, check_whole};
 use crate::memory::{Alignment, Allocation};
 use crate::{Driver, DriverError};
 
@@ -48,46 +48,60 @@ impl<B: Bus> Driver<B> {
     /// Copies a mesh into video memory: coloured vertices, and indices into them if given.
     ///
     /// # Errors
-    /// [`DriverError::VertexCount`], [`DriverError::BadIndex`], or [`DriverError::Memory`] if there is no room.
+    /// As [`Driver::create_mesh`].
     pub fn upload_mesh(
         &mut self,
         topology: Topology,
         vertices: &[Vertex],
         indices: Option<&[u32]>,
     ) -> Result<MeshBuffer, DriverError> {
-        let flags = DrawFlags { topology, indexed: indices.is_some(), coloured: true };
-        let gouraud = |indices: Option<&[u32]>| match indices {
-            None => needs_gouraud(topology, |at| vertices[at].colour, vertices.len()),
-            Some(indices) => needs_gouraud(topology, |at| vertices[indices[at] as usize].colour, indices.len()),
-        };
-        self.upload(flags, vertices.len(), bytemuck::cast_slice(vertices), indices, gouraud)
+        self.create_mesh(topology, &Vertices::coloured(vertices), indices)
     }
 
     /// Copies a mesh of positions into video memory; it is drawn in the material colour.
     ///
     /// # Errors
-    /// As [`Driver::upload_mesh`].
+    /// As [`Driver::create_mesh`].
     pub fn upload_positions(
         &mut self,
         topology: Topology,
         positions: &[[f32; 3]],
         indices: Option<&[u32]>,
     ) -> Result<MeshBuffer, DriverError> {
-        let flags = DrawFlags { topology, indexed: indices.is_some(), coloured: false };
-        self.upload(flags, positions.len(), bytemuck::cast_slice(positions), indices, |_| false)
+        self.create_mesh(topology, &Vertices::new(positions), indices)
     }
 
-    fn upload(
+    /// Copies a mesh of vertices of any format into video memory, and indices into them if given.
+    ///
+    /// ```
+    /// # use zga_abi::format::Topology;
+    /// # use zga_driver::{Driver, DriverError, Vertices, bus::MockBus};
+    /// # let mut driver = Driver::open(MockBus::new(1 << 20))?;
+    /// // A square with a normal and texture coordinates at each corner.
+    /// let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let coordinates = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+    /// let vertices = Vertices::new(&corners).normals(&[[0.0, 0.0, 1.0]; 4]).coordinates(&coordinates);
+    /// let mesh = driver.create_mesh(Topology::Triangles, &vertices, Some(&[0, 1, 2, 0, 2, 3]))?;
+    /// assert_eq!(mesh.primitives(), 2);
+    /// # Ok::<(), DriverError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`DriverError::ListLength`] if there is not a colour, normal or texture coordinate for each vertex,
+    /// [`DriverError::VertexCount`], [`DriverError::BadIndex`], or [`DriverError::Memory`] if there is no room.
+    pub fn create_mesh(
         &mut self,
-        flags: DrawFlags,
-        count: usize,
-        words: &[u32],
+        topology: Topology,
+        vertices: &Vertices<'_>,
         indices: Option<&[u32]>,
-        gouraud: impl FnOnce(Option<&[u32]>) -> bool,
     ) -> Result<MeshBuffer, DriverError> {
+        vertices.check()?;
+        let count = vertices.len();
+        let flags = vertices.flags(topology, indices.is_some());
         check_whole(flags.topology, indices.map_or(count, <[u32]>::len))?;
         check_indices(indices.unwrap_or_default(), count)?;
-        let gouraud = gouraud(indices);
+        let gouraud = vertices.gouraud(topology, indices);
+        let words = vertices.words();
         let vertices = self.allocate(4 * words.len() as u64, Alignment::Line)?;
         let index_buffer = match indices.map(|indices| self.allocate(4 * indices.len() as u64, Alignment::Line)) {
             None => None,
@@ -98,7 +112,7 @@ impl<B: Bus> Driver<B> {
             }
         };
         // Fresh memory: no work under way reads it, so it is written at once.
-        self.bus.write_burst(MEMORY_BASE + vertices.address(), words);
+        self.bus.write_burst(MEMORY_BASE + vertices.address(), &words);
         if let (Some(buffer), Some(indices)) = (&index_buffer, indices) {
             self.bus.write_burst(MEMORY_BASE + buffer.address(), indices);
         }
@@ -115,10 +129,10 @@ impl<B: Bus> Driver<B> {
         if mesh.primitives() == 0 {
             return Ok(());
         }
-        let state = self.prepare_draw("draw_mesh", mesh.gouraud);
+        let sent = self.prepare_draw("draw_mesh", mesh.flags, mesh.gouraud)?;
         let indices = mesh.indices.as_ref().map_or(0, Allocation::address);
         let payload = [mesh.flags.code(), mesh.vertices.address(), mesh.vertex_count, indices, mesh.index_count];
-        self.encode_in_scene("draw_mesh", state, Opcode::DrawBuffer, &[&payload])
+        self.encode_in_scene("draw_mesh", sent, Opcode::DrawBuffer, &[&payload])
     }
 
     /// Gives a mesh's memory back when the card has drawn what was encoded before.

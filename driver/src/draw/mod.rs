@@ -3,6 +3,7 @@
 mod curve;
 mod flatten;
 mod mesh;
+mod vertices;
 
 use zga_abi::bus::Bus;
 use zga_abi::format::Topology;
@@ -11,6 +12,7 @@ use zga_abi::packet::{DrawFlags, Opcode};
 use crate::{Driver, DriverError};
 pub use curve::Curve;
 pub use mesh::MeshBuffer;
+pub use vertices::Vertices;
 
 /// A vertex: a position in object space (or pixels and depth with the screen camera) and a colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -122,12 +124,10 @@ impl<B: Bus> Driver<B> {
     ///
     /// # Errors
     /// [`DriverError::OutsideScene`], [`DriverError::VertexCount`] if they do not make whole primitives,
-    /// [`DriverError::View`] for a decal slope that the camera does not allow, [`DriverError::NoGrid`] for blend
-    /// in a scene without a grid, or as [`Driver::flush`].
+    /// [`DriverError::View`] for a decal slope that the camera does not allow, [`DriverError::Memory`] if there is no
+    /// room for lights, or as [`Driver::flush`].
     pub fn draw(&mut self, topology: Topology, vertices: &[Vertex]) -> Result<(), DriverError> {
-        check_whole(topology, vertices.len())?;
-        let gouraud = needs_gouraud(topology, |at| vertices[at].colour, vertices.len());
-        self.draw_inline(topology, true, gouraud, vertices.len(), bytemuck::cast_slice(vertices))
+        self.draw_vertices(topology, &Vertices::coloured(vertices), None)
     }
 
     /// Draws positions from the host in the material colour.
@@ -135,8 +135,7 @@ impl<B: Bus> Driver<B> {
     /// # Errors
     /// As [`Driver::draw`].
     pub fn draw_positions(&mut self, topology: Topology, positions: &[[f32; 3]]) -> Result<(), DriverError> {
-        check_whole(topology, positions.len())?;
-        self.draw_inline(topology, false, false, positions.len(), bytemuck::cast_slice(positions))
+        self.draw_vertices(topology, &Vertices::new(positions), None)
     }
 
     /// Draws vertices that indices name, from the host. If it is too long for one packet the vertices are
@@ -150,39 +149,54 @@ impl<B: Bus> Driver<B> {
         vertices: &[Vertex],
         indices: &[u32],
     ) -> Result<(), DriverError> {
-        check_whole(topology, indices.len())?;
-        mesh::check_indices(indices, vertices.len())?;
-        let words: &[u32] = bytemuck::cast_slice(vertices);
-        if 4 + words.len() + indices.len() > self.queue.max_packet() {
-            let ordered: Vec<Vertex> = indices.iter().map(|&index| vertices[index as usize]).collect();
-            return self.draw(topology, &ordered);
-        }
-        if indices.is_empty() {
-            return Ok(());
-        }
-        let gouraud = needs_gouraud(topology, |at| vertices[indices[at] as usize].colour, indices.len());
-        let flags = DrawFlags { topology, indexed: true, coloured: true }.code();
-        let counts = [flags, vertices.len() as u32, indices.len() as u32];
-        let state = self.prepare_draw("draw", gouraud);
-        self.encode_in_scene("draw", state, Opcode::DrawInline, &[&counts, words, indices])
+        self.draw_vertices(topology, &Vertices::coloured(vertices), Some(indices))
     }
 
-    /// Draws `count` vertices of 3 or 4 words each.
-    fn draw_inline(
+    /// Draws vertices of any format from the host, in their order or in that of indices. What is too long for a packet
+    /// is split between primitives; with indices the vertices are sent in their order then.
+    ///
+    /// # Errors
+    /// [`DriverError::ListLength`] if there is not a colour, normal or texture coordinate for each vertex,
+    /// [`DriverError::BadIndex`], or as [`Driver::draw`].
+    pub fn draw_vertices(
         &mut self,
         topology: Topology,
-        coloured: bool,
-        gouraud: bool,
-        count: usize,
-        words: &[u32],
+        vertices: &Vertices<'_>,
+        indices: Option<&[u32]>,
     ) -> Result<(), DriverError> {
+        vertices.check()?;
+        let count = indices.map_or(vertices.len(), <[u32]>::len);
+        check_whole(topology, count)?;
+        mesh::check_indices(indices.unwrap_or_default(), vertices.len())?;
         self.open_scene("draw")?;
         if count == 0 {
             return Ok(());
         }
-        let mut result = self.prepare_draw("draw", gouraud);
-        let flags = DrawFlags { topology, indexed: false, coloured };
+        let gouraud = vertices.gouraud(topology, indices);
+        let words = vertices.words();
+        let flags = vertices.flags(topology, false);
+        match indices {
+            None => self.draw_inline(flags, gouraud, &words),
+            Some(indices) if 4 + words.len() + indices.len() > self.queue.max_packet() => {
+                let each = flags.vertex_words() as usize;
+                let vertex = |&index: &u32| words[index as usize * each..][..each].iter().copied();
+                let ordered: Vec<u32> = indices.iter().flat_map(vertex).collect();
+                self.draw_inline(flags, gouraud, &ordered)
+            }
+            Some(indices) => {
+                let flags = DrawFlags { indexed: true, ..flags };
+                let counts = [flags.code(), vertices.len() as u32, indices.len() as u32];
+                let sent = self.prepare_draw("draw", flags, gouraud)?;
+                self.encode_in_scene("draw", sent, Opcode::DrawInline, &[&counts, &words, indices])
+            }
+        }
+    }
+
+    /// Draws vertices of any number, at least one.
+    fn draw_inline(&mut self, flags: DrawFlags, gouraud: bool, words: &[u32]) -> Result<(), DriverError> {
+        let mut result = self.prepare_draw("draw", flags, gouraud)?;
         let each = flags.vertex_words() as usize;
+        let count = words.len() / each;
         let most = (self.queue.max_packet() - 4) / each / 6 * 6;
         let mut first = 0;
         while first < count {
@@ -191,7 +205,7 @@ impl<B: Bus> Driver<B> {
             let part = &words[first * each..last * each];
             result = self.encode_in_scene("draw", result, Opcode::DrawInline, &[&counts, part]);
             // A strip goes on from its last vertex.
-            first = if topology == Topology::LineStrip && last < count { last - 1 } else { last };
+            first = if flags.topology == Topology::LineStrip && last < count { last - 1 } else { last };
         }
         result
     }

@@ -74,7 +74,7 @@ mod tests {
     fn field_name_of_known_words_is_the_manual_s() {
         assert_eq!(field_name(&[0x0400_0003, 1, 2, 3], 3), "depth");
         assert_eq!(field_name(&[0x0100_0003, 0x284, 0, 0], 3), "MATERIAL_COLOUR");
-        assert_eq!(field_name(&[0x0100_0002, 0x300, 0], 2), "offset 0x0300");
+        assert_eq!(field_name(&[0x0100_0002, 0x2F0, 0], 2), "offset 0x02f0");
         assert_eq!(field_name(&[0x7F00_0000], 0), "header");
     }
 }
