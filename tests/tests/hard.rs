@@ -1,6 +1,6 @@
 //! Every hard case of the manual, chapter "Numbers", as a test of its own. `--nocapture` prints the rows.
 
-use zga_tests::hard::{CASES, Row, card, depth, lines, rasteriser, subpixel, systolic, za};
+use zga_tests::hard::{CASES, Row, card, depth, lines, rasteriser, subpixel, systolic, texture, za};
 
 fn check(row: &Row) {
     println!("{row}");
@@ -68,6 +68,11 @@ cases! {
     subpixel::many_layers,
     subpixel::merge_in_any_order,
     subpixel::triangles_between_samples,
+    texture::level_weights,
+    texture::quad_across_the_eye,
+    texture::widest_span_of_w,
+    texture::equal_layers,
+    texture::holes_at_the_reference,
     lines::zero_length,
     lines::diamond_corners,
     lines::polylines_and_the_longest_line,

@@ -37,11 +37,14 @@ fn first_difference(options: &CardOptions, first: &Outcome, second: &Outcome) ->
     };
     match (visible(options, first), visible(options, second)) {
         (Ok(a), Ok(b)) => {
-            let place = a.iter().zip(&b).position(|(a, b)| a != b);
-            place.map_or_else(
-                || format!("in something that the bus does not show: {}", hidden_difference(first, second)),
-                |place| format!("{} is {:#x} and {:#x}", a[place].0, a[place].1, b[place].1),
-            )
+            // The first ones: sums differ with what they are made of.
+            let differences = a.iter().zip(&b).filter(|(a, b)| a != b).take(6);
+            let told: Vec<_> = differences.map(|(a, b)| format!("{} is {:#x} and {:#x}", a.0, a.1, b.1)).collect();
+            if told.is_empty() {
+                format!("in something that the bus does not show: {}", hidden_difference(first, second))
+            } else {
+                told.join(", ")
+            }
         }
         (Err(error), _) | (_, Err(error)) => error,
     }

@@ -7,10 +7,14 @@ use zga_abi::packet::Opcode;
 
 /// Most vertices of an inline draw.
 const MOST_INLINE: u32 = 40;
+/// Flags of a draw: vertices carry a colour, a normal, texture coordinates.
+const COLOURED: u32 = 1 << 8;
+const NORMALS: u32 = 1 << 9;
+const COORDINATES: u32 = 1 << 10;
 
 impl Composer<'_, '_> {
-    /// Words of a vertex.
-    fn vertex(&mut self, picture: &Picture, coloured: bool) -> Vec<u32> {
+    /// Words of a vertex, with what the flags of a draw say.
+    fn vertex(&mut self, picture: &Picture, flags: u32) -> Vec<u32> {
         let bytes = &mut *self.bytes;
         let mut words = if bytes.chance(8) {
             vec![bytes.odd_float(), bytes.odd_float(), bytes.odd_float()]
@@ -26,23 +30,36 @@ impl Composer<'_, '_> {
             };
             vec![bytes.coordinate(wide), bytes.coordinate(high), z]
         };
-        if coloured {
+        if flags & COLOURED != 0 {
             words.push(bytes.raw());
+        }
+        if flags & NORMALS != 0 {
+            words.extend([(); 3].map(|()| match bytes.byte() {
+                0..4 => bytes.odd_float(),
+                byte => (f32::from(byte as i8) / 64.0).to_bits(),
+            }));
+        }
+        if flags & COORDINATES != 0 {
+            words.extend([(); 2].map(|()| match bytes.byte() {
+                0..4 => bytes.odd_float(),
+                byte => (f32::from(byte as i8) / 16.0).to_bits(),
+            }));
         }
         words
     }
 
-    /// Topology, indexed, coloured; and the flags word.
-    fn flags(&mut self) -> (u32, bool, bool) {
+    /// The flags word, and whether it says indexed.
+    fn flags(&mut self) -> (u32, bool) {
         let topology = self.bytes.pick(&[0, 0, 0, 1, 2, 3]);
         let (indexed, coloured) = (self.bytes.chance(80), self.bytes.chance(180));
-        (topology | (u32::from(indexed) << 4) | (u32::from(coloured) << 8), indexed, coloured)
+        let rest = self.bytes.pick(&[0, 0, NORMALS, COORDINATES, NORMALS | COORDINATES]);
+        (topology | (u32::from(indexed) << 4) | (u32::from(coloured) * COLOURED) | rest, indexed)
     }
 
     pub(super) fn draw_inline(&mut self, picture: &Picture) {
-        let (flags, indexed, coloured) = self.flags();
+        let (flags, indexed) = self.flags();
         let vertices = self.bytes.below(MOST_INLINE);
-        let body: Vec<u32> = (0..vertices).flat_map(|_| self.vertex(picture, coloured)).collect();
+        let body: Vec<u32> = (0..vertices).flat_map(|_| self.vertex(picture, flags)).collect();
         let indices = if indexed { self.bytes.below(2 * MOST_INLINE) } else { 0 };
         let mut payload = vec![flags, vertices, indices];
         payload.extend(body);
@@ -58,7 +75,7 @@ impl Composer<'_, '_> {
             let z = self.bytes.below(256) as f32 / 255.0;
             words.extend([f32::to_bits(x), f32::to_bits(y), z.to_bits(), self.bytes.raw()]);
         }
-        words.extend(self.vertex(picture, true));
+        words.extend(self.vertex(picture, COLOURED));
         words
     }
 
@@ -74,13 +91,14 @@ impl Composer<'_, '_> {
 
     /// Draws from video memory: vertices uploaded just before, or whatever lies there.
     pub(super) fn draw_buffer(&mut self, picture: &Picture) {
-        let (flags, indexed, coloured) = self.flags();
-        let stride = if coloured { 16 } else { 12 };
+        let (flags, indexed) = self.flags();
+        let carried = |flag: u32, words: u32| if flags & flag != 0 { 4 * words } else { 0 };
+        let stride = 12 + carried(COLOURED, 1) + carried(NORMALS, 3) + carried(COORDINATES, 2);
         let most = if self.bytes.chance(20) { 4000 } else { 64 };
         let vertices = self.bytes.below(most);
         let address = 4 * self.bytes.below(self.memory.saturating_sub(stride * vertices) / 4);
         if self.bytes.chance(160) {
-            let body: Vec<u32> = (0..vertices.min(24)).flat_map(|_| self.vertex(picture, coloured)).collect();
+            let body: Vec<u32> = (0..vertices.min(24)).flat_map(|_| self.vertex(picture, flags)).collect();
             self.upload_words(address, &body);
         }
         let indices = if indexed { self.bytes.below(most) } else { 0 };

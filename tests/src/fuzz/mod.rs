@@ -8,7 +8,7 @@
 //! | --- | --- |
 //! | [`bytes`] | bytes as a source of choices |
 //! | [`action`] | what a host can do to a card; bytes to actions |
-//! | [`packets`], `surfaces`, `draws` | packets that are valid but for a few words |
+//! | [`packets`], `surfaces`, `draws`, `looks` | packets that are valid but for a few words |
 //! | [`session`] | a card, and the actions done to it one by one |
 //! | [`coverage`] | which packets were executed, which faults were seen |
 //! | [`mod@reference`] | does the card still answer? |
@@ -30,6 +30,7 @@ pub mod bytes;
 pub mod compare;
 pub mod coverage;
 mod draws;
+mod looks;
 pub mod minimise;
 pub mod packets;
 pub mod reference;

@@ -83,7 +83,7 @@ impl<'a, 'b> Composer<'a, 'b> {
 
     /// One thing that can be done in a scene.
     fn step(&mut self, picture: &Picture) {
-        match self.bytes.byte() % 32 {
+        match self.bytes.byte() % 36 {
             0..=7 => self.draw_inline(picture),
             8 => self.draw_heavy(picture),
             9..=12 => self.draw_buffer(picture),
@@ -108,6 +108,10 @@ impl<'a, 'b> Composer<'a, 'b> {
                 let watchdog = self.bytes.pick(&[1, 1, 2, 4, 0]);
                 self.write(Reg::Watchdog, &[watchdog]);
             }
+            32 => self.fill_rop(),
+            33 => self.copy_rop(),
+            34 => self.convert(),
+            35 => self.stretch(),
             _ => self.register(),
         }
     }
@@ -156,7 +160,8 @@ impl<'a, 'b> Composer<'a, 'b> {
         let effects = match self.bytes.byte() {
             0..240 => {
                 let masks = if self.grid { self.bytes.pick(&[0, 0x400, 0x400, 0x500]) } else { 0 };
-                (self.bytes.below(16) & !1) | (depth & !u32::from(self.bytes.chance(32))) | masks
+                let looks = if self.bytes.chance(110) { self.looks() } else { 0 };
+                (self.bytes.below(16) & !1) | (depth & !u32::from(self.bytes.chance(32))) | masks | looks
             }
             _ => self.bytes.word(),
         };

@@ -108,6 +108,14 @@ impl Composer<'_, '_> {
     pub(super) fn copy(&mut self) {
         let format = self.bytes.below(3);
         let pixel = if format == 2 { 2 } else { 4 };
+        let (from, to) = self.areas(pixel);
+        let source = [format, from.base, from.pitch, from.x, from.y];
+        let destination = [to.base, to.pitch, to.x, to.y];
+        self.push(Opcode::Copy, &[&source[..], &destination, &[from.width, from.height]].concat());
+    }
+
+    /// Two rectangles of one size.
+    fn areas(&mut self, pixel: u32) -> (Area, Area) {
         let from = self.area(pixel, None);
         let to = match self.bytes.byte() % 4 {
             // Overlapping, with the same pitch and with another.
@@ -118,9 +126,68 @@ impl Composer<'_, '_> {
             2 => Area { pitch: from.pitch + pixel * self.bytes.below(3), ..from },
             _ => self.area(pixel, Some([from.width, from.height])),
         };
+        (from, to)
+    }
+
+    /// A format of the bitmap unit, and bytes of its pixels.
+    fn bitmap_format(&mut self) -> (u32, u32) {
+        let format = self.bytes.below(4);
+        (format, [4, 4, 2, 1][format as usize])
+    }
+
+    /// A raster operation and the planes it works on.
+    fn raster(&mut self) -> [u32; 2] {
+        let operation = self.bytes.below(16);
+        let planes = if self.bytes.chance(128) { self.bytes.raw() } else { u32::MAX };
+        [operation, planes]
+    }
+
+    pub(super) fn fill_rop(&mut self) {
+        let (format, pixel) = self.bitmap_format();
+        let Area { base, pitch, x, y, width, height } = self.area(pixel, None);
+        let value = self.bytes.raw();
+        let raster = self.raster();
+        self.push(Opcode::FillRop, &[&[base, pitch, format, x, y, width, height, value][..], &raster].concat());
+    }
+
+    pub(super) fn copy_rop(&mut self) {
+        let (format, pixel) = self.bitmap_format();
+        let (from, to) = self.areas(pixel);
         let source = [format, from.base, from.pitch, from.x, from.y];
-        let destination = [to.base, to.pitch, to.x, to.y];
-        self.push(Opcode::Copy, &[&source[..], &destination, &[from.width, from.height]].concat());
+        let destination = [to.base, to.pitch, to.x, to.y, from.width, from.height];
+        let raster = self.raster();
+        self.push(Opcode::CopyRop, &[&source[..], &destination, &raster].concat());
+    }
+
+    pub(super) fn convert(&mut self) {
+        let [(from_format, from_pixel), (format, pixel)] = [(); 2].map(|()| self.bitmap_format());
+        let from = self.area(from_pixel, None);
+        // Every other one over its source, in rows that hold the larger pixels.
+        let (from, to) = if self.bytes.chance(128) {
+            let from = Area { base: from.base & !3, pitch: 4 * (from.pitch / from_pixel), ..from };
+            let to = Area { x: self.bytes.below(from.x + 3), y: self.bytes.below(from.y + 3), ..from };
+            (from, to)
+        } else {
+            (from, self.area(pixel, Some([from.width, from.height])))
+        };
+        let source = [from_format, from.base, from.pitch, from.x, from.y];
+        let destination = [format, to.base, to.pitch, to.x, to.y, from.width, from.height];
+        self.push(Opcode::Convert, &[&source[..], &destination].concat());
+    }
+
+    pub(super) fn stretch(&mut self) {
+        let filter = self.bytes.below(2);
+        let [(from_format, from_pixel), (format, pixel)] = [(); 2].map(|()| self.bitmap_format());
+        let [from, to] = [from_pixel, pixel].map(|pixel| self.area(pixel, None));
+        let around = |bytes: &mut super::bytes::Bytes<'_>| if bytes.chance(128) { bytes.below(15000) } else { 0 };
+        let [before_x, before_y, behind_x, behind_y] = [(); 4].map(|()| around(self.bytes));
+        let whole = [before_x + to.width + behind_x, before_y + to.height + behind_y].map(|side| side.min(16384));
+        let side = |format, area: Area| [format, area.base, area.pitch, area.x, area.y, area.width, area.height];
+        let part = [before_x, before_y];
+        self.push(
+            Opcode::Stretch,
+            &[&[filter][..], &side(from_format, from), &side(format, to), &whole, &part].concat(),
+        );
     }
 
     pub(super) fn upload(&mut self) {

@@ -17,6 +17,7 @@ pub mod lines;
 pub mod rasteriser;
 pub mod subpixel;
 pub mod systolic;
+pub mod texture;
 pub mod za;
 
 /// One row of the stability report.
@@ -91,6 +92,11 @@ pub const CASES: &[fn() -> Row] = &[
     subpixel::many_layers,
     subpixel::merge_in_any_order,
     subpixel::triangles_between_samples,
+    texture::level_weights,
+    texture::quad_across_the_eye,
+    texture::widest_span_of_w,
+    texture::equal_layers,
+    texture::holes_at_the_reference,
     lines::zero_length,
     lines::diamond_corners,
     lines::polylines_and_the_longest_line,

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Index;
 
 /// Names, in the order of the COUNTERS registers.
-pub const NAMES: [&str; 53] = [
+pub const NAMES: [&str; 64] = [
     "cycles.total",
     "cycles.frontend",
     "cycles.geometry",
@@ -58,6 +58,17 @@ pub const NAMES: [&str; 53] = [
     "subpixel.fragments",
     "subpixel.pool_peak_bytes",
     "subpixel.pixels_degraded",
+    "cycles.texture",
+    "cycles.layers",
+    "texture.texels",
+    "texture.fetches",
+    "texture.decoded_bytes",
+    "texture.holes",
+    "shading.lights",
+    "shading.fogged",
+    "layers.fragments",
+    "layers.blended",
+    "layers.sorted_pixels",
 ];
 
 /// Values of all counters.

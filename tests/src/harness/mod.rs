@@ -23,6 +23,7 @@
 pub mod depth;
 pub mod events;
 pub mod hidden;
+pub mod look;
 mod memory;
 pub mod options;
 pub mod packet;
@@ -30,12 +31,15 @@ pub mod picture;
 pub mod random;
 pub mod scenes;
 pub mod screen;
+pub mod stage;
 pub mod subpixel;
 
 pub use events::Events;
 pub use hidden::{Hidden, Path, Prediction};
+pub use look::{Look, Sampler};
 pub use options::{Camera, Feed, Options, Pixels, State};
 pub use picture::{Differences, Picture};
 pub use random::Random;
 pub use screen::{Counts, RawVertex, Screen, Topology};
+pub use stage::{Comparison, Stage};
 pub use subpixel::{Grid, Order, Resolve, Subpixel};

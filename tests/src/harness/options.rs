@@ -1,6 +1,7 @@
 //! How a card is built and how it draws.
 
 use super::hidden::Hidden;
+use super::look::Look;
 use super::packet::{EFFECT_ANTI_ALIAS, EFFECT_BLEND, EFFECT_DECAL, EFFECT_DEPTH, EFFECT_GOURAUD, EFFECT_PERSPECTIVE};
 use super::subpixel::Subpixel;
 use crate::oracle::{DepthFormat, DepthFunction};
@@ -76,6 +77,8 @@ pub struct Options {
     pub feed: Feed,
     /// Bytes of video memory for [`super::Screen::draw_buffer`].
     pub vertex_bytes: u32,
+    /// Bytes of video memory for textures, palettes and lights.
+    pub texture_bytes: u32,
     /// Who decides visibility, and how.
     pub hidden: Hidden,
     /// Samples of a pixel.
@@ -106,6 +109,7 @@ impl Default for Options {
             subpixel_bits: 8,
             feed: Feed::Ring,
             vertex_bytes: 0,
+            texture_bytes: 0,
             hidden: Hidden::default(),
             subpixel: Subpixel::default(),
             depth_buffer: true,
@@ -138,6 +142,18 @@ impl Default for Camera {
 }
 
 impl Camera {
+    /// An eye that looks down -z at a target of this size: near plane 1, far plane 1024, 90 degrees across and down, y up.
+    #[must_use]
+    pub fn perspective([width, height]: [u32; 2]) -> Self {
+        let depth = -1024.0 / 1023.0;
+        let [x, y] = [width, height].map(|side| side as f32 / 2.0);
+        Self {
+            eye_clip: [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., depth, -1., 0., 0., depth, 0.],
+            viewport: [x, -y, 1., x, y, 0.],
+            ..Self::default()
+        }
+    }
+
     /// The words of the registers.
     #[must_use]
     pub fn words(&self) -> Vec<u32> {
@@ -163,7 +179,7 @@ pub struct State {
     pub decal: bool,
     /// Sub-pixel masks; only with a grid.
     pub anti_alias: bool,
-    /// Translucent layers; only with a grid.
+    /// Translucent layers.
     pub blend: bool,
     /// Width of lines drawn with masks, u8.8 pixels.
     pub line_width: u32,
@@ -173,6 +189,8 @@ pub struct State {
     pub scissor: Option<[u32; 4]>,
     /// Geometry registers.
     pub camera: Camera,
+    /// Texture, holes, blend mode, fog, light.
+    pub look: Look,
     /// Most primitives of a packet; 0 puts in all that fit.
     pub piece: usize,
 }
@@ -193,6 +211,7 @@ impl Default for State {
             point_size: 0x100,
             scissor: None,
             camera: Camera::default(),
+            look: Look::default(),
             piece: 0,
         }
     }
@@ -201,11 +220,14 @@ impl Default for State {
 impl fmt::Debug for State {
     /// The camera only where it is not the identity.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { depth_test, function, write, scissor, camera, piece, line_width, point_size, .. } = self;
+        let Self { depth_test, function, write, scissor, camera, look, piece, line_width, point_size, .. } = self;
         write!(f, "State {{ depth test {depth_test}, {function:?}, write {write}, scissor {scissor:?}, ")?;
         write!(f, "effects {:#x}, pieces of {piece}", self.effects())?;
         if (*line_width, *point_size) != (0x100, 0x100) {
             write!(f, ", lines {line_width:#x}, points {point_size:#x}")?;
+        }
+        if *look != Look::default() {
+            write!(f, ", {look:?}")?;
         }
         if *camera == Camera::default() { write!(f, " }}") } else { write!(f, ", {camera:?} }}") }
     }
@@ -228,6 +250,19 @@ impl State {
             | bit(self.decal, EFFECT_DECAL)
             | bit(self.blend, EFFECT_BLEND)
             | bit(self.anti_alias, EFFECT_ANTI_ALIAS)
+            | self.look.effects()
+    }
+
+    /// The default with translucent layers.
+    #[must_use]
+    pub fn blended(mode: u32) -> Self {
+        Self { blend: true, look: Look { mode, ..Look::default() }, ..Self::default() }
+    }
+
+    /// The default with this look, perspective-correct.
+    #[must_use]
+    pub fn looking(look: Look) -> Self {
+        Self { perspective: true, look, ..Self::default() }
     }
 
     /// The default with sub-pixel masks.

@@ -26,12 +26,24 @@ pub const PATH: u32 = 0x0240;
 pub const SUBPIXEL: u32 = 0x0260;
 /// Effects, depth control, material colour, tag, scissor minimum, scissor maximum, line width, point size.
 pub const DRAW_STATE: u32 = 0x0280;
+/// Texture: base, size, control, offset, window, colour, bias, palette; punch-through reference; blend mode.
+pub const TEXTURE: u32 = 0x0300;
+/// Fog: function, density, end, depth cue scale and offset, colour.
+pub const FOG: u32 = 0x0330;
+/// Light: control, base, count, scene ambient, specular, emission, shininess.
+pub const LIGHT: u32 = 0x0350;
 /// Object to eye, decal, eye to clip (16 each), viewport (6).
 pub const GEOMETRY: u32 = 0x0400;
 /// Pixel history: control, pixel, base, size.
 pub const PROBE: u32 = 0x0600;
 /// The frame shown: base, pitch, format, size.
 pub const SCANOUT: u32 = 0x0688;
+/// Effects that the card has.
+pub const CAPABILITY_EFFECTS: u32 = 0x0008;
+/// Effects called since begin scene.
+pub const EFFECTS_CALLED: u32 = 0x0700;
+/// Units powered since begin scene.
+pub const UNITS_POWERED: u32 = 0x0704;
 /// 1 clears the counters.
 pub const COUNTER_CONTROL: u32 = 0x0708;
 /// Counters, low word first.
@@ -44,6 +56,8 @@ pub const ZA: u32 = 0x0200_0000;
 pub const MEMORY: u32 = 0x4000_0000;
 /// The fence interrupt.
 pub const INTERRUPT_FENCE: u32 = 1;
+/// The interrupt of a packet that was refused.
+pub const INTERRUPT_ERROR: u32 = 4;
 
 /// Effect: depth test.
 pub const EFFECT_DEPTH: u32 = 1;
@@ -53,6 +67,16 @@ pub const EFFECT_GOURAUD: u32 = 2;
 pub const EFFECT_PERSPECTIVE: u32 = 4;
 /// Effect: depth through the decal matrix.
 pub const EFFECT_DECAL: u32 = 8;
+/// Effect: texture.
+pub const EFFECT_TEXTURE: u32 = 0x10;
+/// Effect: levels of a texture.
+pub const EFFECT_MIP_MAP: u32 = 0x20;
+/// Effect: lights and materials.
+pub const EFFECT_LIGHT: u32 = 0x40;
+/// Effect: fog and depth cueing.
+pub const EFFECT_FOG: u32 = 0x80;
+/// Effect: holes where texels say so.
+pub const EFFECT_PUNCH_THROUGH: u32 = 0x200;
 /// Effect: translucent layers.
 pub const EFFECT_BLEND: u32 = 0x100;
 /// Effect: sub-pixel masks.

@@ -1,16 +1,18 @@
 //! A card with a target: draws, reads back, counts.
 //!
 //! Video memory holds, each at a multiple of 4096: the ring, a gap, one or two frame buffers with a gap behind each, the
-//! Z buffer, a gap, room for vertices, room for what comes back. Gaps and row ends are filled with canary words, which
+//! Z buffer, a gap, room for vertices, room for what comes back, room for textures and lights. Gaps and row ends are filled with canary words, which
 //! nothing may change.
 
 use super::depth;
 use super::events::{Events, NAMES};
 use super::hidden::{Hidden, Path};
+use super::look::Look;
 use super::options::{Feed, Options, Pixels, State};
 use super::packet;
 use super::picture::Picture;
 use super::subpixel::Subpixel;
+use crate::oracle::effects::Corner;
 use crate::oracle::{Primitive, Vertex};
 use std::time::Duration;
 use zga_abi::Bus;
@@ -98,6 +100,8 @@ pub(super) struct Places {
     pub vertices: u32,
     /// For what comes back: a word a pixel.
     pub scratch: u32,
+    /// For textures, palettes, lights.
+    pub textures: u32,
 }
 
 /// A card and its target.
@@ -113,6 +117,8 @@ pub struct Screen {
     sequence: u32,
     in_scene: bool,
     state: Option<State>,
+    /// What the registers of the effects hold; `None`: nobody knows.
+    look: Option<Look>,
     queue: Vec<Vec<u32>>,
     queued: usize,
     next_id: u32,
@@ -132,7 +138,8 @@ impl Screen {
         let depth = colour + options.frames.clamp(1, 2) * frame;
         let vertices = (depth + depth_pitch * height).next_multiple_of(GAP) + GAP;
         let scratch = (vertices + options.vertex_bytes).next_multiple_of(GAP);
-        let end = (scratch + 4 * width * height).next_multiple_of(GAP).max(1 << 20);
+        let textures = (scratch + 4 * width * height).next_multiple_of(GAP);
+        let end = (textures + options.texture_bytes).next_multiple_of(GAP).max(1 << 20);
         let card = Card::power_on(CardOptions {
             video_memory: end,
             za_ram: ZA_RAM,
@@ -154,11 +161,13 @@ impl Screen {
                 depth_pitch,
                 vertices,
                 scratch,
+                textures,
             },
             ring_put: 0,
             sequence: 0,
             in_scene: false,
             state: None,
+            look: Some(Look::default()),
             queue: Vec::new(),
             queued: 0,
             next_id: 1,
@@ -177,10 +186,11 @@ impl Screen {
 
     /// Sets the registers that a reset clears.
     fn start(&mut self) {
-        self.bus.write32(packet::INTERRUPT_ENABLE, packet::INTERRUPT_FENCE);
+        self.bus.write32(packet::INTERRUPT_ENABLE, packet::INTERRUPT_FENCE | packet::INTERRUPT_ERROR);
         self.bus.write32(packet::RING_BASE, 0);
         self.bus.write32(packet::RING_SIZE, RING_WORDS);
         (self.ring_put, self.state, self.in_scene) = (0, None, false);
+        self.look = Some(Look::default());
         self.set_target();
     }
 
@@ -289,6 +299,47 @@ impl Screen {
             let words = words_of(part);
             self.push(packet::draw_inline(flags, part.len() as u32, &words, indices.unwrap_or(&[])));
         }
+    }
+
+    /// Draws vertices with all that the state's look needs of them, from packets as `state.piece` says.
+    pub fn draw_corners(&mut self, topology: Topology, corners: &[Corner], state: &State) {
+        self.begin(state);
+        let (normals, coordinates) = (state.look.light.is_some(), state.look.texture.is_some());
+        let flags = topology as u32 | 0x100 | u32::from(normals) << 9 | u32::from(coordinates) << 10;
+        let fits = (RING_WORDS as usize - 64) / (9 * topology.vertices());
+        let piece = if state.piece == 0 { fits } else { state.piece.min(fits) };
+        for part in corners.chunks(piece * topology.vertices()) {
+            let mut words = Vec::with_capacity(9 * part.len());
+            for corner in part {
+                words.extend(corner.position.map(f32::to_bits));
+                words.push(corner.colour);
+                words.extend(corner.normal.iter().filter(|_| normals).map(|x| x.to_bits()));
+                words.extend(corner.coordinates.iter().filter(|_| coordinates).map(|x| x.to_bits()));
+            }
+            self.push(packet::draw_inline(flags, part.len() as u32, &words, &[]));
+        }
+    }
+
+    /// First byte of the region for textures and lights.
+    #[must_use]
+    pub const fn textures(&self) -> u32 {
+        self.places.textures
+    }
+
+    /// Writes words to the region for textures and lights, from a byte of it on, when all before is done.
+    ///
+    /// # Panics
+    /// When they do not fit `texture_bytes`.
+    pub fn put_textures(&mut self, offset: u32, words: &[u32]) {
+        assert!(offset + 4 * words.len() as u32 <= self.options.texture_bytes, "texture_bytes is too small");
+        self.flush();
+        self.bus.write_burst(packet::MEMORY + self.places.textures + offset, words);
+    }
+
+    /// EFFECTS_CALLED and UNITS_POWERED of the scene.
+    pub fn called(&mut self) -> [u32; 2] {
+        self.flush();
+        [packet::EFFECTS_CALLED, packet::UNITS_POWERED].map(|at| self.bus.read32(at))
     }
 
     /// Draws vertices from video memory in one packet.
@@ -406,7 +457,7 @@ impl Screen {
         self.flush();
         self.card.restore(snapshot).expect("a snapshot of such a card");
         self.ring_put = self.bus.read32(packet::RING_PUT);
-        self.state = None;
+        (self.state, self.look) = (None, None);
         // STATUS: between begin scene and end scene.
         self.in_scene = self.bus.read32(0x0044) & 8 != 0;
     }
@@ -416,12 +467,23 @@ impl Screen {
         if self.state != Some(*state) {
             self.push(packet::registers(packet::DRAW_STATE, &state.words()));
             self.push(packet::registers(packet::GEOMETRY, &state.camera.words()));
+            if self.look != Some(state.look) {
+                self.set_look(&state.look);
+            }
             self.state = Some(*state);
         }
         if !self.in_scene {
             self.push(packet::begin_scene());
             self.in_scene = true;
         }
+    }
+
+    fn set_look(&mut self, look: &Look) {
+        let region = self.places.textures;
+        self.push(packet::registers(packet::TEXTURE, &look.texture_words(region)));
+        self.push(packet::registers(packet::FOG, &look.fog_words()));
+        self.push(packet::registers(packet::LIGHT, &look.light_words(region)));
+        self.look = Some(*look);
     }
 
     pub(super) fn push(&mut self, packet: Vec<u32>) {
@@ -456,7 +518,7 @@ impl Screen {
         }
         let sequence = self.sequence;
         while self.bus.read32(packet::FENCE_SEQUENCE) != sequence {
-            let raised = self.bus.wait_interrupt(packet::INTERRUPT_FENCE, PATIENCE);
+            let raised = self.bus.wait_interrupt(packet::INTERRUPT_FENCE | packet::INTERRUPT_ERROR, PATIENCE);
             self.bus.write32(packet::INTERRUPT_STATUS, packet::INTERRUPT_FENCE);
             let error = [0, 4, 8, 12, 16, 20].map(|k| self.bus.read32(packet::ERROR_CODE + k));
             assert!(raised != 0 && error[0] == 0, "the card stands still: error registers {error:x?}");

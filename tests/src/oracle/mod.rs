@@ -13,6 +13,7 @@
 //! | [`clip`] | the unsnapped polygon of a homogeneous triangle | Sutherland and Hodgman 1974; Blinn and Newell 1978 |
 //! | [`supersample`] | the anti-aliased picture: masks, layers, mean of the samples | the rules of one sample, at each sample; Porter and Duff 1984 |
 //! | [`colour`] | affine and perspective-correct colours at a pixel centre | barycentric interpolation; Blinn 1992, "Hyperbolic interpolation" |
+//! | [`effects`] | texture, light, fog, blending, holes: exact where roundings are prescribed, ideal where they are not | the card's manual; see there |
 //! | [`exact`] | fractions, floors and roundings | arithmetic |
 //!
 //! Units: `u` is 1/256 pixel; pixel `(i, j)` is the square `[256 i, 256 i + 256] x [256 j, 256 j + 256]` with its
@@ -35,6 +36,7 @@ pub mod canvas;
 pub mod clip;
 pub mod colour;
 pub mod depth;
+pub mod effects;
 pub mod exact;
 pub mod image;
 pub mod raster;

@@ -49,14 +49,49 @@ fn one_triangle_over_everything_makes_no_pixel_active() {
     }
 }
 
+/// The two triangles of [`quad`] in two colours.
+fn two_colours(z: u32) -> [Primitive; 2] {
+    let [mut first, second] = quad(z);
+    if let Primitive::Triangle(vertices) = &mut first {
+        *vertices = vertices.map(|vertex| vertex.coloured([0, 0, 0, 255]));
+    }
+    [first, second]
+}
+
 #[test]
-fn a_quad_over_everything_makes_only_its_diagonal_active() {
+fn a_quad_of_one_colour_over_everything_makes_no_pixel_active() {
     for (subpixel, path) in everywhere() {
         let (picture, events) = events(subpixel, path, |screen| screen.draw(&quad(5), &State::masked()));
 
-        let active = events["subpixel.pixels_active"];
-        assert!(active <= SIDE as u64, "{subpixel:?} {path:?}: {active}");
+        // The edges of two triangles begin; nothing else happens.
+        let of_unit = ["cycles.subpixel", "subpixel.masks", "subpixel.pixels_active", "subpixel.fragments"];
+        assert_eq!(of_unit.map(|name| events[name]), [2, 2, 0, 0], "{subpixel:?} {path:?}");
         assert!(picture.colour.iter().all(|&pixel| pixel == 0xFFC8_6432), "{subpixel:?} {path:?}");
+    }
+}
+
+#[test]
+fn a_quad_of_two_colours_over_everything_makes_only_its_diagonal_active() {
+    for (subpixel, path) in everywhere() {
+        let (_, events) = events(subpixel, path, |screen| screen.draw(&two_colours(5), &State::masked()));
+
+        assert_eq!(events["subpixel.pixels_active"], SIDE as u64, "{subpixel:?} {path:?}");
+    }
+}
+
+#[test]
+fn triangles_that_cover_a_pixel_together_hide_what_lies_behind() {
+    for (subpixel, path) in everywhere() {
+        // Behind the quad's diagonal lies another edge, submitted before it or after.
+        let behind = [triangle([(0, 0), (SIDE * 256, 0), (0, SIDE * 256)], 9000)];
+        let drawn = |order: [&[Primitive]; 2]| {
+            events(subpixel, path, |screen| order.iter().for_each(|part| screen.draw(part, &State::masked()))).1
+        };
+        let front = two_colours(5);
+        let [alone, before, after] = [[&front[..], &[]], [&behind, &front], [&front, &behind]].map(drawn);
+
+        let stored = [alone, before, after].map(|events| events["subpixel.fragments"]);
+        assert_eq!(stored, [2 * SIDE as u64; 3], "{subpixel:?} {path:?}");
     }
 }
 
@@ -119,11 +154,7 @@ fn lists_that_the_pool_has_no_room_for_leave_the_paths_pixels_and_are_counted() 
         // Each line has one pixel on the diagonal, with two fragments.
         let with_pool = |pool: u32| {
             let (picture, events) = events(Subpixel { pool, ..subpixel }, path, |screen| {
-                let [mut first, second] = quad(5);
-                if let Primitive::Triangle(vertices) = &mut first {
-                    *vertices = vertices.map(|vertex| vertex.coloured([0, 0, 0, 255]));
-                }
-                screen.draw(&[first, second], &State::masked());
+                screen.draw(&two_colours(5), &State::masked());
             });
             let of_unit = ["pixels_active", "pixels_degraded", "fragments", "pool_peak_bytes"];
             (picture.colour, of_unit.map(|name| events[&format!("subpixel.{name}") as &str]))
