@@ -3,8 +3,10 @@
 //! | module | holds |
 //! | --- | --- |
 //! | [`scene`], [`mesh`], [`teapot`], [`demos`] | what is drawn, independent of any card |
+//! | [`texture`] | pictures for textures: reading and palettes |
 //! | [`play`] | a scene through driver and card, and what it cost |
 //! | [`mod@bench`] | the benchmark scenes |
+//! | [`effects`] | what each unit charges for a scene, and what an effect more or less would cost |
 //! | [`paths`] | a scene on every hidden-surface path, compared |
 //! | [`registers`] | the manual of the register map |
 //! | [`picture`] | PNG files and exact comparison |
@@ -25,6 +27,7 @@ pub mod bench;
 mod canvas;
 pub mod cli;
 pub mod demos;
+pub mod effects;
 mod error;
 mod limits;
 pub mod mesh;
@@ -35,7 +38,11 @@ pub mod registers;
 pub mod scene;
 mod table;
 pub mod teapot;
+pub mod texture;
 mod window;
 
 pub use error::{Error, Result};
-pub use limits::{MAX_FILE_BYTES, MAX_JSON_VALUES, MAX_MESH_INDICES, MAX_MESH_VERTICES, MAX_TARGET_PIXELS_PER_SIDE};
+pub use limits::{
+    MAX_FILE_BYTES, MAX_JSON_VALUES, MAX_MESH_INDICES, MAX_MESH_VERTICES, MAX_PICTURE_SIDE, MAX_PICTURE_TEXELS,
+    MAX_TARGET_PIXELS_PER_SIDE, MAX_TEXELS,
+};

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 
-/// Largest file that is read, in bytes: a scene, a mesh, a buffer or a material library.
+/// Largest file that is read, in bytes: a scene, a mesh, a buffer, a material library or a picture.
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
 
 /// Most JSON values (numbers, texts, lists, objects) in one scene file.
@@ -20,6 +20,15 @@ pub const MAX_MESH_VERTICES: usize = 16 << 20;
 
 /// Most indices of one mesh, after strips, fans and polygons are cut into triangles.
 pub const MAX_MESH_INDICES: usize = 48 << 20;
+
+/// Widest and highest picture of a texture, in texels: what the card's registers can say.
+pub const MAX_PICTURE_SIDE: u32 = 16384;
+
+/// Most texels of one picture.
+pub const MAX_PICTURE_TEXELS: u64 = 32 << 20;
+
+/// Most texels of all pictures that one mesh or one scene file names.
+pub const MAX_TEXELS: u64 = 64 << 20;
 
 /// Reads a whole file, but no more than [`MAX_FILE_BYTES`].
 ///

@@ -18,7 +18,7 @@ use crate::error::{Error, Result};
 use crate::paths::View;
 use crate::picture::Picture;
 use crate::play::{Look, Session, Settings};
-use crate::scene::Scene;
+use crate::scene::{Lighting, Scene, TextureFilter};
 use crate::table::grouped;
 
 /// Radians of a turn for each pixel that the mouse is dragged.
@@ -29,7 +29,7 @@ const ZOOM_STEP: f64 = 0.92;
 const FRAME_WAIT: Duration = Duration::from_millis(50);
 /// What the keys do.
 const HELP: &str = "drag: orbit, wheel: zoom, P path, F fidelity, A anti-aliasing, V view of path or samples, D decals, \
-     W wireframe, Space animation, S save, Esc end";
+     W wireframe, T texture filter, L light, G fog, Space animation, S save, Esc end";
 
 /// A window for a picture of this size; none where there is no display.
 pub(crate) fn open(name: &str, size: [u32; 2]) -> Option<Window> {
@@ -231,6 +231,13 @@ impl Controls {
             Key::A if card.effects.contains(Effects::ANTI_ALIAS) => {
                 self.settings.antialias.grid = next_grid(self.settings.antialias.grid);
             }
+            Key::T if card.effects.contains(Effects::TEXTURE) => {
+                self.look.filter = next_of(TextureFilter::NAMED, self.look.filter);
+            }
+            Key::L if card.effects.contains(Effects::LIGHT) => {
+                self.look.lighting = next_of(&Lighting::NAMED[1..], self.look.lighting);
+            }
+            Key::G if card.effects.contains(Effects::FOG) => self.look.other_fog = !self.look.other_fog,
             Key::Space => self.animated = !self.animated,
             Key::V => self.over = self.next_over(),
             Key::H => self.help = !self.help,
@@ -281,13 +288,22 @@ impl Controls {
         let grid = self.settings.antialias.grid.name();
         let grid = if self.settings.is_antialiased() { format!(", {grid} anti-aliased") } else { String::new() };
         let decals = if self.look.decals { "" } else { ", without decals" };
+        let filter = self.look.filter.map_or(String::new(), |filter| format!(", {} texels", filter.name()));
+        let light = self.look.lighting.map_or(String::new(), |light| format!(", light at each {}", light.name()));
+        let fog = if self.look.other_fog { ", other fog" } else { "" };
         let view = self.view().map_or(String::new(), |view| format!(", view of {}", view.name()));
         let wires = if self.look.wireframe { ", wireframe" } else { "" };
         format!(
-            "ZGA: {name}, {path} path{clocked}{grid}{view}{decals}{wires}, {} clocks to draw (H for help)",
+            "ZGA: {name}, {path} path{clocked}{grid}{view}{decals}{wires}{filter}{light}{fog}, {} clocks to draw (H for help)",
             grouped(clocks)
         )
     }
+}
+
+/// The value after this one; none, which leaves it to the materials, after the last.
+fn next_of<T: Copy + PartialEq>(named: &[(&str, T)], value: Option<T>) -> Option<T> {
+    let place = value.map_or(Some(0), |value| Some(named.iter().position(|(_, known)| *known == value)? + 1));
+    named.get(place?).map(|(_, value)| *value)
 }
 
 /// The grid after this one.
@@ -321,7 +337,7 @@ mod tests {
             systolic: SystolicVariant::default(),
             tile_size: [8, 8],
         };
-        let look = Look { decals: true, wireframe: false };
+        let look = Look::default();
         Controls {
             look,
             settings,
@@ -343,7 +359,7 @@ mod tests {
     #[test]
     fn title_tells_what_is_switched_and_the_keys() {
         assert_eq!(start().title("teapot", 1234), "ZGA: teapot, zbuffer path, 1 234 clocks to draw (H for help)");
-        let mut bare = Controls { look: Look { decals: false, wireframe: true }, ..start() };
+        let mut bare = Controls { look: Look { decals: false, wireframe: true, ..Look::default() }, ..start() };
         bare.settings.fidelity = Fidelity::Clocked;
         assert_eq!(
             bare.title("teapot", 5),
@@ -360,6 +376,27 @@ mod tests {
         assert_eq!(taps.take(), [Key::P, Key::F, Key::P]);
         taps.set_key_state(Key::F, true);
         assert!(taps.take().is_empty());
+    }
+
+    #[test]
+    fn press_t_l_and_g_switch_filter_light_and_fog_where_the_card_has_them() {
+        let mut controls = start();
+        let all = CardInfo { effects: Effects::all(), ..card(1) };
+        [Key::T, Key::L, Key::G].into_iter().for_each(|key| controls.press(key, &card(1)));
+        assert_eq!(controls, start());
+        let filters = [(); 4].map(|()| {
+            controls.press(Key::T, &all);
+            controls.look.filter.map(TextureFilter::name)
+        });
+        assert_eq!(filters, [Some("nearest"), Some("bilinear"), Some("trilinear"), None]);
+        let lights = [(); 3].map(|()| {
+            controls.press(Key::L, &all);
+            controls.look.lighting.map(Lighting::name)
+        });
+        assert_eq!(lights, [Some("vertex"), Some("pixel"), None]);
+        [Key::T, Key::L, Key::G].into_iter().for_each(|key| controls.press(key, &all));
+        let title = controls.title("teapot", 5);
+        assert!(title.contains("zbuffer path, nearest texels, light at each vertex, other fog, 5 clocks"), "{title}");
     }
 
     #[test]

@@ -128,14 +128,115 @@ fn show_frames_go_to_a_folder_with_numbers() {
     assert!(folder.read("many/gouraud-0001.png").starts_with(b"\x89PNG"));
 }
 
+/// A lit square in fog, half of it behind glass.
+const EFFECTS: &str = r#"{ "size": [64, 48], "background": [16, 16, 32, 255],
+  "camera": {"orthographic": {"eye": [0,0,4], "target": [0,0,0], "up": [0,1,0], "width": 4, "near": 1, "far": 9}},
+  "lights": [{"type": "directional", "direction": [0,0,-1]}],
+  "materials": {"wall": {"light": "pixel", "fog_function": "linear", "fog_end": 20}, "glass": {"light": "none", "blend": "alpha"}},
+  "draw": [
+    {"triangles": {"vertices": [[-1,-1,0],[1,-1,0],[1,1,0],[-1,1,0]], "indices": [0,1,2,0,2,3],
+      "texture_coordinates": [[0,1],[1,1],[1,0],[0,0]], "colours": [[200,150,100,255]], "material": "wall"}},
+    {"triangles": {"vertices": [[0,-1,1],[1,-1,1],[1,1,1]], "colours": [[0,0,255,100]], "material": "glass"}}
+  ]}"#;
+
 #[test]
-fn show_effects_beyond_the_card_are_told_and_drawn_without() {
-    let folder = Folder::new("effects");
-    let lit = SCENE.replacen('{', r#"{"lights": [{"type": "directional", "direction": [0,0,-1]}],"#, 1);
-    folder.write("lit.json", &lit);
-    let run = folder.zga(&["show", "lit.json", "--out", "a.png"]);
+fn effects_of_a_plain_scene_are_free_of_every_other_unit() {
+    let folder = Folder::new("effects-plain");
+    folder.write("scene.json", SCENE);
+    let run = folder.zga(&["effects", "scene.json", "--json", "--report", "r.json", "--out", "deep/p.png"]);
     assert_eq!(run.code(), Some(0), "{}", run.err());
-    assert!(run.err().contains("this card has no unit yet for lights[0]"), "{}", run.err());
+    let found: Value = serde_json::from_str(&run.out()).expect("JSON alone");
+    assert_eq!(found["effects"]["called"], json!(["depth", "decal"]));
+    assert_eq!(found["charged_without_power"], json!([]));
+    for unit in ["texture", "shading", "layers", "subpixel", "za", "systolic", "tile", "probe"] {
+        let unit = &found["units"][unit];
+        assert_eq!((&unit["powered"], &unit["clocks"]), (&json!(false), &json!(0)), "{unit}");
+        let all =
+            ["events", "bytes"].map(|list| unit[list].as_object().expect("counts").values().all(|n| *n == json!(0)));
+        assert_eq!(all, [true; 2], "{unit}");
+    }
+    assert_eq!(found["units"]["geometry"]["events"]["geometry.primitives"], 3);
+    assert_eq!(found["units"]["z_buffer"]["bytes"]["z_buffer"], 4 * 64 * 48);
+    let report: Value = serde_json::from_slice(&folder.read("r.json")).expect("JSON");
+    assert_eq!((&report["effects"], &report["frame_hash"]), (&found["effects"], &found["frame_hash"]));
+    assert!(folder.read("deep/p.png").starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn effects_of_a_scene_are_charged_to_their_units() {
+    let folder = Folder::new("effects-lit");
+    folder.write("scene.json", EFFECTS);
+    for path in ["zbuffer", "za", "systolic", "tile"] {
+        let run = folder.zga(&["effects", "scene.json", "--json", "--path", path]);
+        assert_eq!((run.code(), run.err()), (Some(0), String::new()), "{path}");
+        let found: Value = serde_json::from_str(&run.out()).expect("JSON");
+        assert_eq!(found["effects"]["called"], json!(["depth", "light", "fog", "blend"]), "{path}");
+        let count = |unit: &str, name: &str| found["units"][unit]["events"][name].as_u64().unwrap_or(0);
+        // The wall is 32 x 32 pixels, each with one light and fog; the glass is half of 16 x 32 of them.
+        assert_eq!(count("shading", "shading.lights"), 32 * 32, "{path}");
+        assert_eq!(count("shading", "shading.fogged"), 32 * 32, "{path}");
+        assert!((200..=280).contains(&count("layers", "layers.blended")), "{path}");
+        assert_eq!(found["units"]["texture"]["powered"], false);
+    }
+    let table = folder.zga(&["effects", "scene.json", "--antialias", "8x8"]);
+    assert_eq!(table.code(), Some(0), "{}", table.err());
+    assert!(table.out().contains("depth, light, fog, blend, anti_alias") && table.out().contains("What is not called"));
+}
+
+#[test]
+fn effects_what_if_prices_what_is_called_and_what_is_not() {
+    let folder = Folder::new("effects-what-if");
+    folder.write("scene.json", EFFECTS);
+    let run = folder.zga(&["effects", "scene.json", "--what-if", "--pairs", "3", "--json", "--threads", "1"]);
+    assert_eq!(run.code(), Some(0), "{}", run.err());
+    let found: Value = serde_json::from_str(&run.out()).expect("JSON");
+    let prices = found["what_if"].as_array().expect("a list");
+    let names: Vec<&str> = prices.iter().filter_map(|price| price["change"].as_str()).collect();
+    let expected = [
+        "without depth",
+        "without light",
+        "without fog",
+        "without blend",
+        "with texture: a checker",
+        "with punch_through: a checker with holes",
+        "with light at each vertex",
+        "with anti_alias 4x4",
+        "with anti_alias 8x8",
+    ];
+    assert_eq!(names, expected);
+    let clocks = |name: &str| {
+        let price = prices.iter().find(|price| price["change"] == name).expect("there");
+        (price["pairs"].as_u64(), price["clocks"]["difference"].as_f64().expect("a number"))
+    };
+    // A clock a fogged pixel; 4 a light and 1 a pixel; a texel a pixel of the wall.
+    assert_eq!(clocks("without fog"), (Some(3), -1024.0));
+    assert!(clocks("without light").1 <= -5.0 * 1024.0);
+    assert!(clocks("with texture: a checker").1 >= 1024.0);
+    assert!(clocks("with anti_alias 8x8").1 > 0.0);
+    assert!(prices.iter().all(|price| price["note"] == Value::Null && price["host_ms"]["ratio"].as_f64() > Some(0.0)));
+}
+
+#[test]
+fn show_environment_lights_a_mesh_and_nothing_else() {
+    let folder = Folder::new("environment");
+    folder.write("one.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nvn 0 0 1\nf 1//1 2//1 3//1\n");
+    let show = |environment: &str| {
+        let flags = ["show", "one.obj", "--size", "64x48", "--out", "a.png", "--report", "r.json"];
+        let run = folder.zga(&[&flags[..], &["--environment", environment]].concat());
+        assert_eq!(run.code(), Some(0), "{}", run.err());
+        let report: Value = serde_json::from_slice(&folder.read("r.json")).expect("JSON");
+        (report["frame_hash"].clone(), report["effects"]["called"].clone())
+    };
+    let all = ["plain", "studio", "sun", "night", "fog"].map(show);
+    assert_eq!(all[0].1, json!(["depth"]));
+    assert_eq!(all[1].1, json!(["depth", "perspective", "light"]));
+    assert_eq!(all[4].1, json!(["depth", "gouraud", "perspective", "light", "fog"]));
+    for (number, (hash, _)) in all.iter().enumerate() {
+        assert!(all[..number].iter().all(|(other, _)| other != hash), "{number}");
+    }
+    let refused = folder.zga(&["show", "teapot", "--environment", "sun", "--headless"]);
+    assert_eq!(refused.code(), Some(2));
+    assert!(refused.err().contains("--environment: teapot is no mesh"), "{}", refused.err());
 }
 
 #[test]
@@ -321,23 +422,21 @@ fn antialias_of_flags_goes_before_the_scene_and_stands_in_the_report() {
 }
 
 #[test]
-fn translucency_is_drawn_with_antialias_and_told_without() {
+fn translucency_is_drawn_with_and_without_antialias() {
     let folder = Folder::new("translucent");
     let glass = SCENE
         .replace("\"draw\": [\n", "\"materials\": {\"glass\": {\"blend\": \"alpha\"}}, \"draw\": [\n")
         .replace("[[255,0,0,255]]", "[[255,0,0,128]], \"material\": \"glass\"");
     folder.write("glass.json", &glass);
-    let plain = folder.zga(&["show", "glass.json", "--report", "a.json"]);
-    assert_eq!(plain.code(), Some(0), "{}", plain.err());
-    let told = "this card has no unit yet for materials.glass.blend (translucency needs antialias for now)";
-    assert!(plain.err().contains(told), "{}", plain.err());
-    let smooth = folder.zga(&["show", "glass.json", "--antialias", "4x4", "--report", "b.json"]);
-    assert_eq!((smooth.code(), smooth.err().contains("warning")), (Some(0), false), "{}", smooth.err());
-    let called = ["a.json", "b.json"].map(|file| {
+    let called = [("a.json", "off"), ("b.json", "4x4")].map(|(file, grid)| {
+        let run = folder.zga(&["show", "glass.json", "--antialias", grid, "--report", file]);
+        assert_eq!((run.code(), run.err()), (Some(0), String::new()), "{grid}");
         let report: Value = serde_json::from_slice(&folder.read(file)).expect("JSON");
-        report["effects"]["called"].as_array().expect("a list").contains(&"blend".into())
+        let blends = report["effects"]["called"].as_array().expect("a list").contains(&"blend".into());
+        (blends, report["counters"]["layers.blended"].as_u64() > Some(100))
     });
-    assert_eq!(called, [false, true]);
+    // Without samples layers are the layer unit's, with them the sub-pixel unit's.
+    assert_eq!(called, [(true, true), (true, false)]);
 }
 
 #[test]
@@ -358,8 +457,9 @@ fn demos_of_anti_aliasing_are_smooth_at_once_and_flags_go_first() {
         assert_eq!(called.contains(&"blend".into()), demo == "layers");
         let (plain, told) = draw(&["--antialias", "off"]);
         assert_eq!(plain["card"]["antialias"], "off");
-        assert!(!plain["effects"]["called"].as_array().expect("a list").contains(&"anti_alias".into()));
-        assert_eq!(told.contains("materials.glass.blend (translucency needs antialias"), demo == "layers", "{told}");
+        let called = plain["effects"]["called"].as_array().expect("a list");
+        assert!(!called.contains(&"anti_alias".into()) && told.is_empty(), "{told}");
+        assert_eq!(called.contains(&"blend".into()), demo == "layers");
     }
 }
 

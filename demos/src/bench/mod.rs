@@ -10,13 +10,15 @@ use std::time::Instant;
 
 use zga_abi::format::Topology;
 use zga_device::{Card, CardBus, CardOptions};
-use zga_driver::{Driver, DriverError, MeshBuffer, Target, TargetOptions, Vertex};
+use zga_driver::{
+    Driver, DriverError, MeshBuffer, Target, TargetOptions, Texture, TextureOptions, TextureState, Vertex, Vertices,
+};
 
 use crate::error::{Error, Result};
 use crate::play::{Asked, Settings, check_kernel, za_ram};
 use crate::scene::CardSettings;
 
-pub use scenes::{BenchScene, Corner, SCENES};
+pub use scenes::{BenchScene, Corner, SCENES, TEXTURE_SIDE, texture};
 
 /// How a scene is measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,6 +87,7 @@ pub struct Bench {
     driver: Driver<CardBus>,
     target: Target,
     mesh: MeshBuffer,
+    texture: Option<Texture>,
     samples: u32,
     frames: u8,
     // Last: the driver goes before its card.
@@ -101,7 +104,7 @@ impl Bench {
         let name = format!("S{}", scene.number);
         let fault = || Error::driver(name.as_str());
         let pixels = (u64::from(scene.width) + 128) * u64::from(scene.height);
-        let bytes = 12 * pixels + 16 * scene.corners.len() as u64 + (4 << 20);
+        let bytes = 12 * pixels + 24 * scene.corners.len() as u64 + (4 << 20);
         let video_memory = bytes.next_multiple_of(1 << 22).clamp(1 << 24, 1 << 30) as u32;
         let size = [scene.width, scene.height];
         let (za_ram, threads, kernel) = (za_ram(size), asked.threads, asked.kernel);
@@ -118,9 +121,15 @@ impl Bench {
         let target = driver.create_target(options).map_err(fault())?;
         let vertices: Vec<Vertex> = scene.corners.iter().map(vertex).collect();
         let topology = if scene.lines { Topology::Lines } else { Topology::Triangles };
-        let mesh = driver.upload_mesh(topology, &vertices, None).map_err(fault())?;
+        let coordinates: Vec<[f32; 2]> = scene.corners.iter().map(coordinates).collect();
+        let mut list = Vertices::coloured(&vertices);
+        if scene.is_textured() {
+            list = list.coordinates(&coordinates);
+        }
+        let mesh = driver.create_mesh(topology, &list, None).map_err(fault())?;
+        let texture = if scene.is_textured() { Some(upload(&mut driver).map_err(fault())?) } else { None };
         let samples = settings.antialias.grid.samples();
-        Ok(Bench { scene, driver, target, mesh, samples, frames: 0, _card: card })
+        Ok(Bench { scene, driver, target, mesh, texture, samples, frames: 0, _card: card })
     }
 
     /// Draws a frame and waits for its fence.
@@ -129,6 +138,14 @@ impl Bench {
         let red = if self.scene.number == 1 { self.frames } else { 0 };
         self.driver.begin_scene(&self.target)?;
         self.driver.clear(Some([red, 0, 0, 255]), Some(1.0))?;
+        if self.scene.is_translucent() {
+            self.driver.set_blend(true)?;
+            self.driver.set_depth_write(false);
+        }
+        if let Some(texture) = &self.texture {
+            // Repeated, trilinear, multiplied by the colour.
+            self.driver.set_texture(Some(&TextureState::new(texture)))?;
+        }
         self.driver.draw_mesh(&self.mesh)?;
         self.driver.end_scene()?;
         self.driver.finish()
@@ -180,6 +197,18 @@ fn vertex(corner: &Corner) -> Vertex {
     Vertex::new(position, corner.colour)
 }
 
+/// Texture coordinates of a corner, 1 the whole texture.
+fn coordinates(corner: &Corner) -> [f32; 2] {
+    [corner.u, corner.v].map(|units| (f64::from(units) / f64::from(1 << 24)) as f32)
+}
+
+/// The texture of S8 in video memory, with all of its levels.
+fn upload(driver: &mut Driver<CardBus>) -> std::result::Result<Texture, DriverError> {
+    let handle = driver.create_texture(&TextureOptions::new(TEXTURE_SIDE, TEXTURE_SIDE))?;
+    driver.upload_texture(&handle, &texture())?;
+    Ok(handle)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -200,17 +229,19 @@ mod tests {
     #[test]
     fn measure_draws_every_scene_and_dumps_it() {
         for (number, ..) in SCENES {
-            let scene = BenchScene::new(number, 320, 320).expect("fits");
+            let [width, height] = if number == 9 { [1024, 768] } else { [320, 320] };
+            let scene = BenchScene::new(number, width, height).expect("fits");
             let mut bench = Bench::new(scene, &Asked { threads: 1, ..Asked::default() }).expect("a card");
             let measured = bench.measure(0.0).expect("drawn");
             assert!(measured.frames() >= 3);
             assert_eq!(measured.samples, if number == 10 { 64 } else { 1 });
             let dump = bench.dump().expect("captured");
-            assert!(dump.starts_with(b"RGBA 320 320\n"));
-            let pixels = dump[13..].as_chunks::<4>().0;
-            assert_eq!(pixels.len(), 320 * 320);
+            let head = format!("RGBA {width} {height}\n");
+            assert!(dump.starts_with(head.as_bytes()));
+            let pixels = dump[head.len()..].as_chunks::<4>().0;
+            assert_eq!(pixels.len(), (width * height) as usize);
             let covered = pixels.iter().filter(|pixel| **pixel != [0, 0, 0, 255]).count();
-            assert!(covered > 320 * 320 / 2, "S{number}: {covered} pixels covered");
+            assert!(covered > pixels.len() / 2, "S{number}: {covered} pixels covered");
         }
     }
 }

@@ -32,9 +32,9 @@ impl Pcg32 {
         ((u64::from(self.next()) * u64::from(n)) >> 32) as i32
     }
 
-    fn colour(&mut self) -> [u8; 4] {
+    fn colour(&mut self, alpha: u8) -> [u8; 4] {
         let [red, green, blue, _] = self.next().to_le_bytes();
-        [red, green, blue, 255]
+        [red, green, blue, alpha]
     }
 }
 
@@ -47,8 +47,27 @@ pub struct Corner {
     pub y: i32,
     /// Depth times 65536: 0 near, 65536 far.
     pub depth: i32,
+    /// Texture coordinate to the right: textures times 2^24.
+    pub u: i32,
+    /// Texture coordinate downward: textures times 2^24.
+    pub v: i32,
     /// Red, green, blue, alpha.
     pub colour: [u8; 4],
+}
+
+/// Texels on each side of the texture of S8.
+pub const TEXTURE_SIDE: u32 = 256;
+
+/// Level 0 of the texture of S8, RGBA, row by row: squares of 16 texels in which colours run along rows and columns.
+#[must_use]
+pub fn texture() -> Vec<[u8; 4]> {
+    let texel = |at: u32| {
+        let (x, y) = (at % TEXTURE_SIDE, at / TEXTURE_SIDE);
+        let odd = ((x >> 4) ^ (y >> 4)) & 1 == 1;
+        let [x, y] = [x as u8, y as u8];
+        [if odd { x } else { 255 - x }, x ^ y, if odd { 255 - y } else { y }, 255]
+    };
+    (0..TEXTURE_SIDE * TEXTURE_SIDE).map(texel).collect()
 }
 
 /// A benchmark scene.
@@ -71,7 +90,7 @@ pub struct BenchScene {
 }
 
 /// Numbers, names and descriptions of the scenes there are.
-pub const SCENES: [(u32, &str, &str); 8] = [
+pub const SCENES: [(u32, &str, &str); 10] = [
     (1, "clear", "only the clear; its red value changes every frame"),
     (2, "fill far", "64 layers from far to near: every pixel passes"),
     (3, "fill hidden", "64 layers from near to far: all but the first are hidden"),
@@ -79,6 +98,8 @@ pub const SCENES: [(u32, &str, &str); 8] = [
     (5, "medium", "20 000 triangles of about 400 pixels"),
     (6, "slivers", "20 000 triangles, 300 pixels long and 0.75 wide"),
     (7, "lines", "100 000 lines of about 60 pixels"),
+    (8, "textured", "2 000 triangles of about 5 000 pixels with a MIP-mapped texture, trilinear: every pixel passes"),
+    (9, "translucent", "200 triangles of about 100 000 pixels, one behind the other, a quarter opaque"),
     (10, "smooth", "S5 anti-aliased"),
 ];
 
@@ -90,12 +111,12 @@ fn cross([a, b, c]: Triangle) -> i64 {
     (part(b, 0) * part(c, 1) - part(c, 0) * part(b, 1)).abs()
 }
 
-/// A triangle in a box of `side` pixels with an area of `area` pixels.
-fn box_triangle(generator: &mut Pcg32, side: u32, area: [i64; 2]) -> Triangle {
+/// A triangle in a box of so many pixels across and down, with an area of `area` pixels.
+fn box_triangle(generator: &mut Pcg32, sides: [u32; 2], area: [i64; 2]) -> Triangle {
     loop {
         let mut triangle = Triangle::default();
-        for coordinate in triangle.iter_mut().flatten() {
-            *coordinate = generator.below(side * 256 + 1);
+        for corner in &mut triangle {
+            *corner = sides.map(|side| generator.below(side * 256 + 1));
         }
         if (area[0] * 131_072..=area[1] * 131_072).contains(&cross(triangle)) {
             return triangle;
@@ -138,11 +159,13 @@ impl BenchScene {
         // S10 is S5, drawn with samples.
         let drawn = if number == 10 { 5 } else { number };
         // The least side that the boxes and segments fit into, with room to spare.
-        let least = [1, 1, 1, 9, 49, 320, 80].get(drawn.checked_sub(1)? as usize).copied()?;
-        if width.min(height) < least || width.max(height) > crate::limits::MAX_TARGET_PIXELS_PER_SIDE {
+        // The triangles of S9 need their box whole.
+        let least = [1, 1, 1, 9, 49, 320, 80, 161, 1].get(drawn.checked_sub(1)? as usize).copied()?;
+        let fits = drawn != 9 || (width >= 1024 && height >= 768);
+        if !fits || width.min(height) < least || width.max(height) > crate::limits::MAX_TARGET_PIXELS_PER_SIDE {
             return None;
         }
-        let primitives = [0, 128, 128, 200_000, 20_000, 20_000, 100_000][drawn as usize - 1];
+        let primitives = [0, 128, 128, 200_000, 20_000, 20_000, 100_000, 2_000, 200][drawn as usize - 1];
         let lines = drawn == 7;
         let each = if lines { 2 } else { 3 };
         let mut corners = vec![Corner::default(); primitives * each];
@@ -155,23 +178,40 @@ impl BenchScene {
                 for corners in corners.chunks_exact_mut(3) {
                     let left = generator.below((width - side) * 256 + 1);
                     let top = generator.below((height - side) * 256 + 1);
-                    let triangle = box_triangle(&mut generator, side, area);
+                    let triangle = box_triangle(&mut generator, [side; 2], area);
                     place(&mut generator, corners, triangle.map(|[x, y]| [left + x, top + y]));
-                    corners.iter_mut().for_each(|corner| corner.colour = generator.colour());
+                    corners.iter_mut().for_each(|corner| corner.colour = generator.colour(255));
                 }
             }
             6 => {
                 for corners in corners.chunks_exact_mut(3) {
                     let triangle = segment(&mut generator, size, [290, 310], true);
                     place(&mut generator, corners, triangle);
-                    corners.iter_mut().for_each(|corner| corner.colour = generator.colour());
+                    corners.iter_mut().for_each(|corner| corner.colour = generator.colour(255));
+                }
+            }
+            8 => {
+                for (number, corners) in (0..).zip(corners.chunks_exact_mut(3)) {
+                    textured(&mut generator, corners, size, number);
+                }
+            }
+            9 => {
+                for (number, corners) in (0..).zip(corners.chunks_exact_mut(3)) {
+                    let left = generator.below((width - 1024) * 256 + 1);
+                    let top = generator.below((height - 768) * 256 + 1);
+                    let triangle = box_triangle(&mut generator, [1024, 768], [90_000, 110_000]);
+                    let colour = generator.colour(64);
+                    for (corner, [x, y]) in corners.iter_mut().zip(triangle) {
+                        let (x, y, depth) = (left + x, top + y, 65_000 - 300 * number);
+                        *corner = Corner { x, y, depth, colour, ..Corner::default() };
+                    }
                 }
             }
             7 => {
                 for corners in corners.chunks_exact_mut(2) {
                     let ends = segment(&mut generator, size, [55, 65], false);
                     place(&mut generator, corners, ends);
-                    let colour = generator.colour();
+                    let colour = generator.colour(255);
                     corners.iter_mut().for_each(|corner| corner.colour = colour);
                 }
             }
@@ -191,13 +231,25 @@ impl BenchScene {
         (self.number == 10).then_some(SubpixelGrid::Grid8x8)
     }
 
-    /// FNV-1a over all corners, the check value of the definition (texture coordinates count as 0).
+    /// It is drawn with [`texture`].
+    #[must_use]
+    pub fn is_textured(&self) -> bool {
+        self.number == 8
+    }
+
+    /// It is drawn with blending and stores no depths.
+    #[must_use]
+    pub fn is_translucent(&self) -> bool {
+        self.number == 9
+    }
+
+    /// FNV-1a over all corners, the check value of the definition.
     #[must_use]
     pub fn fnv(&self) -> u64 {
         let mut hash = 0xCBF2_9CE4_8422_2325_u64;
         let mut put = |byte: u8| hash = (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01B3);
         for corner in &self.corners {
-            for word in [corner.x, corner.y, corner.depth, 0, 0] {
+            for word in [corner.x, corner.y, corner.depth, corner.u, corner.v] {
                 word.to_le_bytes().into_iter().for_each(&mut put);
             }
             corner.colour.into_iter().for_each(&mut put);
@@ -210,11 +262,31 @@ impl BenchScene {
 fn layers(generator: &mut Pcg32, corners: &mut [Corner], [width, height]: [i32; 2], from_far: bool) {
     const PLACES: [[i32; 2]; 6] = [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]];
     for (layer, corners) in (0..).zip(corners.chunks_exact_mut(6)) {
-        let colour = generator.colour();
+        let colour = generator.colour(255);
         let depth = if from_far { 64 - layer } else { layer + 1 } * 1000;
         for (corner, [x, y]) in corners.iter_mut().zip(PLACES) {
-            *corner = Corner { x: x * width * 256, y: y * height * 256, depth, colour };
+            *corner = Corner { x: x * width * 256, y: y * height * 256, depth, colour, ..Corner::default() };
         }
+    }
+}
+
+/// Triangle `number` of S8: nearer than those before it, 0.5 to 4 texels a pixel, in half of the cases mirrored at the
+/// diagonal of the texture.
+fn textured(generator: &mut Pcg32, corners: &mut [Corner], [width, height]: [i32; 2], number: i32) {
+    const SIDE: i32 = 160;
+    let left = generator.below(((width - SIDE) * 256 + 1) as u32);
+    let top = generator.below(((height - SIDE) * 256 + 1) as u32);
+    let triangle = box_triangle(generator, [SIDE as u32; 2], [4500, 5500]);
+    for (corner, [x, y]) in corners.iter_mut().zip(triangle) {
+        (corner.x, corner.y, corner.depth) = (left + x, top + y, 65_000 - 30 * number);
+    }
+    corners.iter_mut().for_each(|corner| corner.colour = generator.colour(255));
+    let texels = 128 + generator.below(897);
+    let mirrored = generator.below(2) == 1;
+    for corner in corners {
+        // Pixels times 256 by texels a pixel times 256; the definition has no target so wide that 32 bits do not hold it.
+        let (u, v) = (corner.x.wrapping_mul(texels), corner.y.wrapping_mul(texels));
+        (corner.u, corner.v) = if mirrored { (v, u) } else { (u, v) };
     }
 }
 
@@ -248,14 +320,28 @@ mod tests {
         check(5, 20_000, 7_630_619.8, 0x43CC_9361_AFC1_97DA);
         check(6, 20_000, 2_244_101.3, 0xE402_024E_D899_D382);
         check(7, 100_000, 5_418_301.7, 0xC77F_E174_0600_731C);
+        check(8, 2_000, 9_904_390.8, 0xE748_6E7D_01D6_CA55);
+        check(9, 200, 19_929_622.1, 0x43BE_5B2F_C381_B444);
         check(10, 20_000, 7_630_619.8, 0x43CC_9361_AFC1_97DA);
+    }
+
+    #[test]
+    fn texture_texels_are_those_of_the_definition() {
+        let texture = texture();
+        assert_eq!(texture.len(), 65_536);
+        // At (3, 2) k = 0; at (20, 2) k = 1; at (255, 254) k = 0.
+        assert_eq!(texture[2 * 256 + 3], [252, 1, 2, 255]);
+        assert_eq!(texture[2 * 256 + 20], [20, 22, 253, 255]);
+        assert_eq!(texture[254 * 256 + 255], [0, 1, 254, 255]);
     }
 
     #[test]
     fn new_unknown_number_or_small_viewport_is_none() {
         assert!(BenchScene::new(0, 64, 64).is_none());
-        assert!(BenchScene::new(8, 1024, 768).is_none());
+        assert!(BenchScene::new(8, 160, 768).is_none());
+        assert!(BenchScene::new(11, 1024, 768).is_none());
         assert!(BenchScene::new(6, 100, 768).is_none());
+        assert!(BenchScene::new(9, 1023, 768).is_none());
         assert!(BenchScene::new(1, 1, 1).is_some_and(|scene| scene.corners.is_empty()));
     }
 }

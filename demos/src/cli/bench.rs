@@ -14,7 +14,7 @@ use crate::play::Asked;
 use crate::scene::{CardSettings, HIDDEN_SURFACES, HiddenSurface};
 use crate::table::{Align, columns, row};
 
-/// Measure the benchmark scenes S1 to S7 and S10
+/// Measure the benchmark scenes S1 to S10
 ///
 /// With --peer: prints the line of the comparison harness, peer,scene,size,samples,frames,median_ms,min_ms,p90_ms,
 /// Mpixel/s,Mtri/s,prims, for one scene (S5 if none is named). S10 is S5 with anti-aliasing, 8x8 samples a pixel where --antialias asks for
@@ -167,7 +167,7 @@ fn scene(text: &str) -> std::result::Result<u32, String> {
     let number = text.strip_prefix(['S', 's']).unwrap_or(text).parse().ok();
     number
         .filter(|number| SCENES.iter().any(|(known, ..)| known == number))
-        .ok_or_else(|| "expected 1 to 7, or 10: the scenes S8 and S9 call for units that this card has not".to_owned())
+        .ok_or_else(|| "expected 1 to 10, or S1 to S10".to_owned())
 }
 
 /// A time that is not negative and not endless.
@@ -182,8 +182,8 @@ mod tests {
 
     #[test]
     fn scene_and_seconds_good_and_bad_texts() {
-        assert_eq!((scene("5"), scene("S7"), scene("s10")), (Ok(5), Ok(7), Ok(10)));
-        assert!(["0", "8", "S9", "11", "x", ""].iter().all(|text| scene(text).is_err()));
+        assert_eq!((scene("5"), scene("S8"), scene("s10")), (Ok(5), Ok(8), Ok(10)));
+        assert!(["0", "S0", "11", "x", ""].iter().all(|text| scene(text).is_err()));
         assert_eq!(seconds("0.5"), Ok(0.5));
         assert!(["-1", "nan", "1e9", "x"].iter().all(|text| seconds(text).is_err()));
     }

@@ -38,7 +38,7 @@ pub(super) struct Capture {
 impl Capture {
     pub(super) fn run(&self) -> Result<Verdict> {
         let asked = self.card.asked();
-        let source = Source::open(&self.what, asked.size, asked.card.antialias)?;
+        let source = Source::open(&self.what, asked.size, self.look.environment)?;
         let mut session = Session::open(&source.name, &source.scene(0), &asked)?;
         let bar = progress::bar(u64::from(self.frames), "frames");
         let (mut text, mut different) = (String::new(), 0);

@@ -5,7 +5,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use zga_device::Kernel;
 
 use crate::limits::MAX_TARGET_PIXELS_PER_SIDE;
-use crate::play::{Asked, KERNELS, Look};
+use crate::play::{Asked, Environment, KERNELS, Look};
 use crate::scene::{
     ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, Fidelity, HIDDEN_SURFACES, HiddenSurface,
     MOST_SUBPIXEL_POOL, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelGrid, SubpixelResolve, SystolicSettings, TILE_SIDES,
@@ -121,12 +121,15 @@ pub(super) struct LookFlags {
     /// Draw triangles as their edges, with hidden ones removed
     #[arg(long)]
     wireframe: bool,
+    /// Light that a mesh is shown in; one with materials of its own in the studio if nothing is asked for, else plain
+    #[arg(long, value_name = "NAME", value_parser = named(Environment::NAMED))]
+    pub environment: Option<Environment>,
 }
 
 impl LookFlags {
     /// The same as a plain value.
     pub(super) fn look(self) -> Look {
-        Look { decals: !self.no_decals, wireframe: self.wireframe }
+        Look { decals: !self.no_decals, wireframe: self.wireframe, ..Look::default() }
     }
 }
 

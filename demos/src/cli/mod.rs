@@ -5,6 +5,7 @@
 
 mod bench;
 mod capture;
+mod effects;
 mod flags;
 mod list;
 mod main_job;
@@ -58,6 +59,7 @@ enum Command {
     Pixel(pixel::Pixel),
     Trace(trace::Trace),
     Paths(paths::Paths),
+    Effects(effects::Effects),
     Waves(waves::Waves),
     Bench(bench::Bench),
     Registers(registers::Registers),
@@ -83,6 +85,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Pixel(command)) => command.run(),
         Some(Command::Trace(command)) => command.run(),
         Some(Command::Paths(command)) => command.run(),
+        Some(Command::Effects(command)) => command.run(),
         Some(Command::Waves(command)) => command.run(),
         Some(Command::Bench(command)) => command.run(),
         Some(Command::Registers(command)) => command.run(),

@@ -62,7 +62,7 @@ pub(super) struct Paths {
 }
 
 /// A path that ends in .png.
-fn png(text: &str) -> std::result::Result<PathBuf, String> {
+pub(super) fn png(text: &str) -> std::result::Result<PathBuf, String> {
     let path = Path::new(text);
     let is_png = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
     if is_png { Ok(path.to_owned()) } else { Err("expected a file that ends in .png".to_owned()) }
@@ -77,7 +77,7 @@ impl Paths {
         let card = CardSettings { hidden_surface: Some(HiddenSurface::ZBuffer), ..units };
         let Self { size, threads, kernel, .. } = *self;
         let asked = Asked { size, threads, kernel, subpixel_bits: None, card };
-        let source = Source::open(&self.what, size, card.antialias)?;
+        let source = Source::open(&self.what, size, self.look.environment)?;
         let scene = Scene {
             card: CardSettings { fidelity: None, ..source.scene(self.frame).card },
             ..source.scene(self.frame)

@@ -37,7 +37,7 @@ pub(super) struct Pixel {
 impl Pixel {
     pub(super) fn run(&self) -> Result<Verdict> {
         let asked = self.card.asked();
-        let source = Source::open(&self.what, asked.size, asked.card.antialias)?;
+        let source = Source::open(&self.what, asked.size, self.look.environment)?;
         let scene = source.scene(self.frame);
         let ([width, height], (x, y)) = (scene.size, (self.x, self.y));
         if x >= width || y >= height {

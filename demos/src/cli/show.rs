@@ -20,7 +20,8 @@ pub(super) const FOLDER: &str = "zga-out";
 /// Show a demo, a scene file or a mesh
 ///
 /// In a window: drag to orbit, wheel to zoom, P the next path, F fidelity, A the next grid of samples, V the next view
-/// (what the path knows, what the sub-pixel unit took up where there is a grid, none), D decals, W wireframe, Space
+/// (what the path knows, what the sub-pixel unit took up where there is a grid, none), D decals, W wireframe,
+/// T texture filter, L light at vertices or pixels, G fog, Space
 /// animation, S saves a picture, H help, Esc ends; the title tells path, anti-aliasing, view and clocks. With
 /// --headless, one of --out, --depth, --report, or no display: as files.
 #[derive(Args, Debug)]
@@ -64,7 +65,7 @@ impl Show {
             return Err(Error::Use(format!("--out {path} is one file, but --frames asks for {frames}: name a folder")));
         }
         let asked = viewed(self.card.asked(), self.view)?;
-        let source = Source::open(&self.what, asked.size, asked.card.antialias)?;
+        let source = Source::open(&self.what, asked.size, self.look.environment)?;
         sampled(&asked, &source, self.view)?;
         let wants_files = self.headless || self.out.is_some() || self.depth.is_some() || self.report.is_some();
         if !wants_files && show_window(&source, &asked, self.look, self.view)? {

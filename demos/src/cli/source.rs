@@ -6,7 +6,8 @@ use super::note;
 use crate::demos::{self, Demo};
 use crate::error::{Error, Result};
 use crate::mesh;
-use crate::scene::{self, Scene, SubpixelGrid};
+use crate::play::Environment;
+use crate::scene::{self, Scene};
 
 /// Size of the picture of a mesh, in pixels, where nothing is asked for.
 const MESH_SIZE: [u32; 2] = [800, 600];
@@ -31,20 +32,32 @@ enum Kind {
 }
 
 impl Source {
-    /// A demonstration of this name, or else the file; `size` and `antialias` go before the scene's own.
+    /// A demonstration of this name, or else the file; `size` goes before the scene's own,
+    /// and a mesh stands in this light.
     ///
     /// # Errors
-    /// [`Error::Use`] for what is neither; what is wrong with the file.
-    pub(super) fn open(text: &str, size: Option<[u32; 2]>, antialias: Option<SubpixelGrid>) -> Result<Self> {
+    /// [`Error::Use`] for what is neither, and for light on what is no mesh; what is wrong with the file.
+    pub(super) fn open(text: &str, size: Option<[u32; 2]>, environment: Option<Environment>) -> Result<Self> {
         let (name, file) = (text.to_owned(), Path::new(text));
+        let is_mesh = ["obj", "gltf", "glb"].iter().any(|ending| Some(*ending) == lower_ending(file).as_deref());
+        if environment.is_some() && !is_mesh {
+            return Err(Error::Use(format!(
+                "--environment: {text} is no mesh: demos and scene files have light of their own"
+            )));
+        }
         if let Some(demo) = demos::find(text) {
-            tell_unsupported(text, &demo.build(0), antialias);
             return Ok(Self { name, stem: text.to_owned(), size, kind: Kind::Demo(demo) });
         }
-        let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        let scene = match ending.as_deref() {
+        let scene = match lower_ending(file).as_deref() {
             Some("json") => scene::load(file)?,
-            Some("obj" | "gltf" | "glb") => Scene::showing(mesh::load(file)?, size.unwrap_or(MESH_SIZE)),
+            Some("obj" | "gltf" | "glb") => {
+                let mesh = mesh::load(file)?;
+                let light = environment.unwrap_or_else(|| Environment::usual(&mesh));
+                let bounds = mesh.bounds();
+                let mut scene = Scene::showing(mesh, size.unwrap_or(MESH_SIZE));
+                light.light(&mut scene, bounds);
+                scene
+            }
             _ => {
                 let hint = "neither a demo (see zga list) nor a file that ends in .json, .obj, .gltf or .glb";
                 return Err(Error::Use(format!("{text}: {hint}")));
@@ -53,7 +66,6 @@ impl Source {
         for line in scene.warnings() {
             note(&format!("warning: {line}"));
         }
-        tell_unsupported(text, &scene, antialias);
         let stem = file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy()).into_owned();
         Ok(Self { name, stem, size, kind: Kind::Scene(Box::new(scene)) })
     }
@@ -79,14 +91,9 @@ impl Source {
     }
 }
 
-/// Warns of effects that no unit of the card has; `antialias` goes before the scene's own.
-fn tell_unsupported(name: &str, scene: &Scene, antialias: Option<SubpixelGrid>) {
-    let grid = antialias.or(scene.card.antialias).unwrap_or(SubpixelGrid::Off);
-    let beyond = scene.unsupported_effects(grid);
-    if !beyond.is_empty() {
-        let beyond = beyond.join(", ");
-        note(&format!("warning: {name}: this card has no unit yet for {beyond}; drawn without"));
-    }
+/// The ending of a file's name in small letters.
+fn lower_ending(file: &Path) -> Option<String> {
+    file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase())
 }
 
 #[cfg(test)]

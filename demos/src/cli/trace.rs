@@ -83,7 +83,7 @@ impl Trace {
 impl Record {
     fn run(&self) -> Result<Verdict> {
         let asked = self.card.asked();
-        let source = Source::open(&self.what, asked.size, asked.card.antialias)?;
+        let source = Source::open(&self.what, asked.size, self.look.environment)?;
         let file = &self.file;
         let to = BufWriter::new(File::create(file).map_err(Error::write(file))?);
         let mut session = Session::record(&source.name, &source.scene(0), &asked, to, file)?;

@@ -67,7 +67,7 @@ impl Waves {
         }
         let card =
             CardSettings { hidden_surface: Some(HiddenSurface::Systolic), fidelity: Some(Fidelity::Clocked), ..units };
-        let source = Source::open(&self.what, self.size, card.antialias)?;
+        let source = Source::open(&self.what, self.size, self.look.environment)?;
         let scene = source.scene(self.frame);
         let [width, height] = scene.size;
         let line = self.line.unwrap_or(height / 2);

@@ -6,10 +6,20 @@ mod crossing;
 mod curve;
 mod decal_compare;
 mod depth;
+mod effects;
 mod fine_mesh;
+mod floor;
+mod foliage;
+mod glass;
+mod landscape;
 mod layers;
+mod lights;
+mod looks;
+mod overlay;
 mod palette;
+mod palette_texture;
 mod paths;
+mod pictures;
 mod points;
 mod raster;
 mod shapes;
@@ -170,6 +180,49 @@ pub const DEMOS: &[Demo] = &[
         frames: TURN,
         scene: layers::scene,
     },
+    Demo {
+        name: "floor",
+        description: "a paved floor to the horizon: nearest texel, bilinear, trilinear with a MIP map",
+        frames: floor::FRAMES,
+        scene: floor::scene,
+    },
+    Demo {
+        name: "palette-texture",
+        description: "one picture in every format of texels, from 32 bits to a palette of 16 colours",
+        frames: 1,
+        scene: palette_texture::scene,
+    },
+    Demo {
+        name: "lights",
+        description: "a sun, a lamp and a spot on two teapots: light at each vertex (left), at each pixel (right)",
+        frames: TURN,
+        scene: lights::scene,
+    },
+    Demo {
+        name: "landscape",
+        description: "hills round a lake in a low sun, fading into the haze",
+        frames: TURN,
+        scene: landscape::scene,
+    },
+    Demo {
+        name: "foliage",
+        description: "trees, bushes and grass of flat cards with holes, drawn in any order",
+        frames: TURN,
+        scene: foliage::scene,
+    },
+    Demo {
+        name: "glass",
+        description: "crossing panes that add, cover and multiply, and a glass teapot",
+        frames: TURN,
+        scene: glass::scene,
+    },
+    Demo {
+        name: "effects",
+        description: "one small scene twelve times, each with one effect, the last with all",
+        frames: TURN,
+        scene: effects::scene,
+    },
+    Demo { name: "effects-smooth", description: "the same anti-aliased", frames: TURN, scene: effects::smooth },
 ];
 
 /// The demonstration with this name.
@@ -220,23 +273,12 @@ mod tests {
     }
 
     #[test]
-    fn demos_call_for_no_effect_beyond_colours_decals_and_their_samples() {
-        for demo in DEMOS {
-            let scene = demo.build(0);
-            let grid = scene.card.antialias.unwrap_or(SubpixelGrid::Off);
-            assert_eq!(scene.unsupported_effects(grid), Vec::<String>::new(), "{}", demo.name);
-        }
-        let layers = find("layers").expect("listed").build(0);
-        assert_eq!(layers.unsupported_effects(SubpixelGrid::Off).len(), 1, "translucency needs samples");
-    }
-
-    #[test]
     fn demos_of_anti_aliasing_ask_for_it_by_themselves() {
         let asking = |grid| {
             let asks = move |demo: &&Demo| demo.build(0).card.antialias == Some(grid);
             DEMOS.iter().filter(asks).map(|demo| demo.name).collect::<Vec<_>>()
         };
-        let smooth = ["zone-plate", "spokes", "fine-mesh", "teapot-smooth", "crossing"];
+        let smooth = ["zone-plate", "spokes", "fine-mesh", "teapot-smooth", "crossing", "effects-smooth"];
         assert_eq!(asking(SubpixelGrid::Grid8x8), smooth);
         assert_eq!(asking(SubpixelGrid::Grid4x4), ["layers"]);
     }

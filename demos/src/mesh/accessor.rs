@@ -159,7 +159,7 @@ pub(super) fn normalised(value: f64, kind: Option<DataType>) -> f64 {
 }
 
 /// The bytes that a URI stands for: a data URI or a file beside the document.
-fn from_uri(uri: &str, folder: &Path) -> Read<Vec<u8>> {
+pub(super) fn from_uri(uri: &str, folder: &Path) -> Read<Vec<u8>> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, text) = data.split_once(',').ok_or_else(|| "a data URI without a comma".to_owned())?;
         return match kind.strip_suffix(";base64") {

@@ -1,8 +1,9 @@
 //! glTF 2.0 files, as text (.gltf) or binary (.glb).
 //!
 //! Duties: walks the nodes of the default scene, places their meshes in the world, and cuts strips, fans and loops into
-//! triangles and lines. Read are positions, normals, the first set of vertex colours and the base colour factor, also
-//! of primitives that are compressed ([`super::draco`]).
+//! triangles and lines. Read are positions, normals, texture coordinates and the first set of vertex colours, also of
+//! primitives that are compressed ([`super::draco`]); materials ([`super::gltf_material`]) and lights
+//! ([`super::gltf_light`]). What the file has beyond that is named in the warnings.
 
 use std::path::Path;
 
@@ -11,12 +12,17 @@ use gltf::mesh::Mode;
 
 use super::accessor::Buffers;
 use super::draco::{self, Vertices};
-use super::{Mesh, PLAIN_COLOUR, simplest};
+use super::gltf_light::{self, Lamps};
+use super::gltf_material::{self, Materials, Placement};
+use super::{Mesh, PLAIN_COLOUR, Part, shortened, simplest};
 use crate::error::{Error, Result};
 use crate::limits::{MAX_MESH_INDICES, MAX_MESH_VERTICES};
-use crate::scene::{Colour, narrow, wide};
+use crate::scene::{Colour, Material, narrow, wide};
 
 type Read<T> = std::result::Result<T, String>;
+
+/// Extensions that are read.
+const EXTENSIONS: [&str; 4] = [gltf_material::UNLIT, gltf_material::TRANSFORM, gltf_light::EXTENSION, draco::EXTENSION];
 
 /// Deepest nesting of nodes.
 const MAX_DEPTH: usize = 64;
@@ -42,7 +48,9 @@ fn document(bytes: &[u8], folder: &Path) -> Read<Mesh> {
     check_attributes(&json)?;
     let document = validated(json).map_err(invalid)?;
     let buffers = Buffers::load(&document, blob, folder)?;
-    let mut builder = Builder::default();
+    let mut builder = Builder { warnings: beyond(&document), ..Builder::default() };
+    let mut materials = Materials::new(&document, &buffers, folder);
+    let mut lamps = Lamps::default();
     let mut visits = 0;
     // Without a scene every root is shown; a node that some other names is no root.
     let roots: Vec<gltf::Node<'_>> = match document.default_scene().or_else(|| document.scenes().next()) {
@@ -67,21 +75,44 @@ fn document(bytes: &[u8], folder: &Path) -> Read<Mesh> {
                 let place = format!("mesh {} primitive {}", mesh.index(), primitive.index());
                 let vertices = Vertices::of(&primitive, &document, &buffers);
                 vertices
-                    .and_then(|vertices| builder.primitive(&primitive, &vertices, matrix))
+                    .and_then(|vertices| builder.primitive(&primitive, &vertices, matrix, &mut materials))
                     .map_err(|reason| format!("{place}: {reason}"))?;
             }
+        }
+        if let Some(light) = node.light() {
+            lamps.add(&light, matrix);
         }
         let first = waiting.len();
         waiting.extend(node.children().map(|child| (child, matrix, depth + 1)));
         waiting[first..].reverse();
     }
-    Ok(builder.finish())
+    let mut mesh = builder.finish();
+    mesh.warnings.extend(materials.into_warnings());
+    mesh.lights = lamps.finish(&mesh.bounds(), &mut mesh.warnings);
+    Ok(mesh)
+}
+
+/// What the file has and is not read, a line each.
+fn beyond(document: &gltf::Document) -> Vec<String> {
+    let unread = document.extensions_used().filter(|name| !EXTENSIONS.contains(name));
+    let mut lines: Vec<String> =
+        unread.take(16).map(|name| format!("extension {} left out", shortened(name))).collect();
+    let primitives = document.meshes().flat_map(|mesh| mesh.primitives().collect::<Vec<_>>());
+    let morphs = primitives.filter(|primitive| primitive.morph_targets().len() > 0).count();
+    let counts = [
+        ("animations", document.animations().len()),
+        ("skins", document.skins().len()),
+        ("cameras", document.cameras().len()),
+        ("primitives with morph targets, drawn without them", morphs),
+    ];
+    let there = counts.iter().filter(|(_, count)| *count > 0);
+    lines.extend(there.map(|(what, count)| format!("{what} left out: {count}")));
+    lines
 }
 
 /// Refuses files that cannot be understood without an extension that is not read here.
 fn check_extensions(json: &gltf::json::Root) -> Read<()> {
-    const READ: [&str; 2] = ["KHR_materials_unlit", draco::EXTENSION];
-    match json.extensions_required.iter().find(|name| !READ.contains(&name.as_str())) {
+    match json.extensions_required.iter().find(|name| !EXTENSIONS.contains(&name.as_str())) {
         Some(name) => Err(format!("needs the glTF extension {name}, which is not supported; export it without")),
         None => Ok(()),
     }
@@ -135,14 +166,23 @@ struct Builder {
     /// Zero where a vertex has none.
     normals: Vec<DVec3>,
     colours: Vec<Colour>,
+    /// Zero where a vertex has none, and shorter than the positions where the last ones have none.
+    coordinates: Vec<[f32; 2]>,
     triangles: Vec<u32>,
+    parts: Vec<Part>,
     lines: Vec<u32>,
     points: Vec<u32>,
     warnings: Vec<String>,
 }
 
 impl Builder {
-    fn primitive(&mut self, primitive: &gltf::Primitive<'_>, vertices: &Vertices<'_>, matrix: DMat4) -> Read<()> {
+    fn primitive(
+        &mut self,
+        primitive: &gltf::Primitive<'_>,
+        vertices: &Vertices<'_>,
+        matrix: DMat4,
+        materials: &mut Materials<'_>,
+    ) -> Read<()> {
         let rows = vertices.rows(&gltf::Semantic::Positions, 3, "positions")?;
         let count = rows.len() / 3;
         let base = self.positions.len();
@@ -158,6 +198,8 @@ impl Builder {
         }
         self.add_normals(vertices, matrix, count)?;
         self.add_colours(primitive, vertices, count)?;
+        let placement = materials.placement(&primitive.material());
+        let has_coordinates = self.add_coordinates(vertices, placement, base, count)?;
 
         let order = match vertices.indices() {
             None => (0..count as u32).collect(),
@@ -179,7 +221,14 @@ impl Builder {
                 // A mirrored node turns every triangle over.
                 let mirrored = matrix.determinant() < 0.0;
                 let turn = |[a, b, c]: [u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+                let first = self.triangles.len() / 3;
                 self.triangles.extend(triangles(&order, mode).flat_map(turn));
+                let end = self.triangles.len() / 3;
+                let material = materials.of(&primitive.material(), has_coordinates);
+                match self.parts.last_mut() {
+                    Some(last) if last.material == material => last.triangles.end = end,
+                    _ => self.parts.push(Part { triangles: first..end, material }),
+                }
             }
         }
         match [&self.triangles, &self.lines, &self.points].iter().any(|list| list.len() > MAX_MESH_INDICES) {
@@ -228,6 +277,21 @@ impl Builder {
         Ok(())
     }
 
+    /// Adds texture coordinates of a set, if the primitive has it.
+    fn add_coordinates(&mut self, vertices: &Vertices<'_>, from: Placement, base: usize, count: usize) -> Read<bool> {
+        let set = gltf::Semantic::TexCoords(from.set);
+        if vertices.accessor(&set).is_none() {
+            return Ok(false);
+        }
+        let rows = vertices.rows(&set, 2, "texture coordinates")?;
+        same_count(rows.len() / 2, count, "texture coordinates")?;
+        self.coordinates.resize(base, [0.0; 2]);
+        let place =
+            |row: &[f64; 2]| std::array::from_fn(|axis| (row[axis] * from.scale[axis] + from.offset[axis]) as f32);
+        self.coordinates.extend(rows.as_chunks::<2>().0.iter().map(place));
+        Ok(true)
+    }
+
     fn finish(mut self) -> Mesh {
         let with = self.normals.iter().filter(|normal| **normal != DVec3::ZERO).count();
         let normals = (with > 0 && !self.triangles.is_empty()).then(|| {
@@ -239,6 +303,13 @@ impl Builder {
         });
         let mut mesh = Mesh::new("", self.positions, self.triangles, PLAIN_COLOUR);
         mesh.normals = normals;
+        if !self.coordinates.is_empty() {
+            self.coordinates.resize(mesh.positions.len(), [0.0; 2]);
+            mesh.texture_coordinates = Some(self.coordinates);
+        }
+        if self.parts.iter().any(|part| *part.material != Material::default()) {
+            mesh.parts = self.parts;
+        }
         mesh.colours = simplest(self.colours);
         mesh.lines = self.lines;
         mesh.points = self.points;
@@ -291,7 +362,7 @@ fn triangles(order: &[u32], mode: Mode) -> Box<dyn Iterator<Item = [u32; 3]> + '
 }
 
 /// A linear colour as it is shown.
-fn shown(linear: [f32; 4]) -> Colour {
+pub(super) fn shown(linear: [f32; 4]) -> Colour {
     let encode = |value: f32| {
         let value = value.clamp(0.0, 1.0);
         if value <= 0.003_130_8 { value * 12.92 } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }

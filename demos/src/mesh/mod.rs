@@ -10,17 +10,24 @@ mod draco;
 mod draco_tests;
 mod edges;
 mod gltf_file;
+mod gltf_light;
+mod gltf_material;
+#[cfg(test)]
+mod material_tests;
+mod mtl;
 mod obj;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::error::{Error, Result};
 use crate::limits;
-use crate::scene::{Colour, Colours, Perspective};
+use crate::scene::{Colour, Colours, Light, Material, Perspective};
 
 /// Colour of a surface whose file gives none.
 pub const PLAIN_COLOUR: Colour = [206, 202, 194, 255];
@@ -34,6 +41,8 @@ pub struct Mesh {
     pub positions: Vec<[f32; 3]>,
     /// Unit normals, one for each vertex, or none: then each triangle is flat.
     pub normals: Option<Vec<[f32; 3]>>,
+    /// Texture coordinates, one pair for each vertex: v grows downward from the picture's first row.
+    pub texture_coordinates: Option<Vec<[f32; 2]>>,
     /// Colours before any light.
     pub colours: Colours,
     /// Triangles, three indices of vertices each.
@@ -42,8 +51,22 @@ pub struct Mesh {
     pub lines: Vec<u32>,
     /// Points, one index each.
     pub points: Vec<u32>,
+    /// Runs of triangles with a material each, in order and together all of them; none where all triangles have the
+    /// default one.
+    pub parts: Vec<Part>,
+    /// Lights of the file, where the mesh stands; for who shows the mesh alone.
+    pub lights: Vec<Light>,
     /// What was left out or guessed while the mesh was read.
     pub warnings: Vec<String>,
+}
+
+/// A run of triangles with one material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// The triangles, exclusive end.
+    pub triangles: Range<usize>,
+    /// How they look. Its colour is in the vertices.
+    pub material: Arc<Material>,
 }
 
 /// The space that a mesh takes.
@@ -93,10 +116,13 @@ impl Mesh {
             name: name.to_owned(),
             positions,
             normals: None,
+            texture_coordinates: None,
             colours: Colours::One(colour),
             indices,
             lines: Vec::new(),
             points: Vec::new(),
+            parts: Vec::new(),
+            lights: Vec::new(),
             warnings: Vec::new(),
         }
     }
@@ -122,6 +148,24 @@ impl Mesh {
         }
         if self.normals.as_ref().is_some_and(|normals| normals.len() != count) {
             return Err("has not one normal for each vertex".to_owned());
+        }
+        if let Some(coordinates) = &self.texture_coordinates {
+            if coordinates.len() != count {
+                return Err("has not one pair of texture coordinates for each vertex".to_owned());
+            }
+            if let Some(vertex) = coordinates.iter().position(|pair| pair.iter().any(|c| !c.is_finite())) {
+                return Err(format!("texture coordinate {vertex} (from 0) is not finite"));
+            }
+        }
+        let mut end = 0;
+        for part in &self.parts {
+            if part.triangles.start != end || part.triangles.end < end {
+                return Err(format!("has parts with a gap or an overlap at triangle {end}"));
+            }
+            end = part.triangles.end;
+        }
+        if !self.parts.is_empty() && end != self.triangle_count() {
+            return Err(format!("has parts of {end} triangles, but {} triangles", self.triangle_count()));
         }
         match &self.colours {
             Colours::PerVertex(list) if list.len() != count => Err("has not one colour for each vertex".to_owned()),
@@ -195,6 +239,24 @@ impl Mesh {
             near: (distance - ROOM * radius).max(distance * 1e-3) as f32,
             far: (distance + ROOM * radius) as f32,
         }
+    }
+}
+
+/// A name of a file for a message, in quotes and cut when it is long.
+fn shortened(name: &str) -> String {
+    const LONGEST: usize = 60;
+    match name.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{:?}...", &name[..end]),
+        None => format!("{name:?}"),
+    }
+}
+
+/// Colour and sharpness of a highlight as the card takes them. One so wide that all of the lit side would shine is
+/// none: with an exponent near 0 the card would light up everything to the very edge.
+fn highlight([r, g, b]: [u8; 3], exponent: f32) -> (Colour, f32) {
+    match exponent >= 1.0 && [r, g, b] != [0; 3] {
+        true => ([r, g, b, 255], exponent.min(128.0)),
+        false => (crate::scene::DARK, 0.0),
     }
 }
 

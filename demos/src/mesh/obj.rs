@@ -1,4 +1,4 @@
-//! Wavefront .obj files.
+//! Wavefront .obj files. Their material libraries are in [`super::mtl`].
 //!
 //! `tobj` does the reading; before it sees a line, the line is checked here. That gives messages with line numbers, and
 //! keeps from it what it cannot take: texture and normal indices out of range, short colours in material libraries,
@@ -7,10 +7,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::{Mesh, PLAIN_COLOUR};
+use super::mtl::{self, Surfaces};
+use super::{Mesh, PLAIN_COLOUR, Part};
 use crate::error::{Error, Result};
 use crate::limits;
-use crate::scene::Colour;
+use crate::scene::{Colour, Material};
 
 /// Reads a file whose bytes are in memory; faces with more than three corners are cut into fans.
 pub(super) fn read(bytes: &[u8], file: &Path) -> Result<Mesh> {
@@ -19,22 +20,24 @@ pub(super) fn read(bytes: &[u8], file: &Path) -> Result<Mesh> {
     let checked = check(&text, &mut warnings).map_err(|reason| Error::mesh(file, reason))?;
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ..Default::default() };
     let folder = file.parent().unwrap_or(Path::new(""));
-    let missing = std::cell::RefCell::new(Vec::new());
-    let library = |name: &Path| {
-        let read = limits::read_file(&folder.join(name)).map(|bytes| plain_library(&String::from_utf8_lossy(&bytes)));
-        match read {
-            Ok(text) => tobj::load_mtl_buf(&mut text.as_bytes()),
-            Err(fault) => {
-                missing.borrow_mut().push(format!("material library left out: {fault}"));
-                Err(tobj::LoadError::OpenFileFailed)
-            }
+    let left_out = std::cell::RefCell::new(Vec::new());
+    let library = |name: &Path| match limits::read_file(&folder.join(name)) {
+        Ok(bytes) => {
+            let text = mtl::plain_library(&String::from_utf8_lossy(&bytes), &mut left_out.borrow_mut());
+            tobj::load_mtl_buf(&mut text.as_bytes())
+        }
+        Err(fault) => {
+            left_out.borrow_mut().push(format!("material library left out: {fault}"));
+            Err(tobj::LoadError::OpenFileFailed)
         }
     };
     let (models, materials) = tobj::load_obj_buf(&mut checked.as_bytes(), &options, library)
         .map_err(|fault| Error::mesh(file, fault.to_string()))?;
-    warnings.extend(missing.into_inner());
+    warnings.extend(left_out.into_inner());
     let materials = materials.unwrap_or_default();
-    let mut mesh = join(&models, &materials, &mut warnings).map_err(|reason| Error::mesh(file, reason))?;
+    let mut surfaces = Surfaces::new(&materials, folder);
+    let mut mesh = join(&models, &mut surfaces, &mut warnings).map_err(|reason| Error::mesh(file, reason))?;
+    warnings.extend(surfaces.into_warnings());
     mesh.warnings = warnings;
     Ok(mesh)
 }
@@ -113,7 +116,7 @@ fn check(text: &str, warnings: &mut Vec<String>) -> std::result::Result<String, 
     Ok(kept)
 }
 
-fn finite<'a>(words: impl Iterator<Item = &'a str>) -> std::result::Result<Vec<f32>, String> {
+pub(super) fn finite<'a>(words: impl Iterator<Item = &'a str>) -> std::result::Result<Vec<f32>, String> {
     let number = |word: &str| {
         let value = word.parse::<f32>().ok().filter(|value| value.is_finite());
         value.ok_or_else(|| format!("expected a finite number, found {word:?}"))
@@ -121,7 +124,7 @@ fn finite<'a>(words: impl Iterator<Item = &'a str>) -> std::result::Result<Vec<f
     words.map(number).collect()
 }
 
-fn write_numbers(into: &mut String, word: &str, values: &[f32]) {
+pub(super) fn write_numbers(into: &mut String, word: &str, values: &[f32]) {
     into.push_str(word);
     for value in values {
         let _ = write!(into, " {value}");
@@ -149,39 +152,15 @@ fn corner(word: &str, counts: [usize; 3]) -> std::result::Result<(), String> {
     Ok(())
 }
 
-/// The lines of a material library that are used, in a form that `tobj` takes.
-fn plain_library(text: &str) -> String {
-    let mut kept = String::new();
-    for line in text.lines() {
-        let line = line.split('#').next().unwrap_or("").trim();
-        let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-        let values = finite(rest.split_whitespace());
-        match (word, values.as_deref()) {
-            ("newmtl", _) if !rest.trim().is_empty() => {
-                let _ = writeln!(kept, "newmtl {}", rest.trim());
-            }
-            ("Kd", Ok([r, g, b, ..])) => write_numbers(&mut kept, "Kd", &[*r, *g, *b]),
-            ("Kd", Ok([grey])) => write_numbers(&mut kept, "Kd", &[*grey; 3]),
-            ("d", Ok([opacity, ..])) => write_numbers(&mut kept, "d", &[*opacity]),
-            ("Tr", Ok([transparency, ..])) => write_numbers(&mut kept, "d", &[1.0 - transparency]),
-            _ => {}
-        }
-    }
-    kept
-}
-
-fn channel(value: f32) -> u8 {
-    (value.clamp(0.0, 1.0) * 255.0).round() as u8
-}
-
 /// One mesh from the parts of a file.
 fn join(
     models: &[tobj::Model],
-    materials: &[tobj::Material],
+    surfaces: &mut Surfaces<'_>,
     warnings: &mut Vec<String>,
 ) -> std::result::Result<Mesh, String> {
     let mut mesh = Mesh::new("", Vec::new(), Vec::new(), PLAIN_COLOUR);
     let mut normals = Vec::new();
+    let mut coordinates: Vec<[f32; 2]> = Vec::new();
     let mut vertex_colours: Vec<Colour> = Vec::new();
     let whole = |part: &tobj::Mesh| !part.normals.is_empty() && part.normals.len() == part.positions.len();
     let smooth = models.iter().all(|model| model.mesh.positions.is_empty() || whole(&model.mesh));
@@ -200,19 +179,41 @@ fn join(
             };
             normals.extend(part.normals.chunks_exact(3).map(unit));
         }
-        let material = part.material_id.and_then(|id| materials.get(id));
-        let alpha = channel(material.and_then(|material| material.dissolve).unwrap_or(1.0));
-        let base_colour = material.and_then(|material| material.diffuse).map(|rgb| rgb.map(channel));
-        let [r, g, b] = base_colour.unwrap_or([PLAIN_COLOUR[0], PLAIN_COLOUR[1], PLAIN_COLOUR[2]]);
+        let vertices = part.positions.len() / 3;
+        let has_coordinates = !part.texcoords.is_empty() && part.texcoords.len() == 2 * vertices;
+        if has_coordinates {
+            coordinates.resize(base as usize, [0.0; 2]);
+            // From the last row of the picture upward to from the first row downward.
+            coordinates.extend(part.texcoords.as_chunks::<2>().0.iter().map(|[u, v]| [*u, 1.0 - *v]));
+        }
+        let surface = surfaces.of(part.material_id, has_coordinates);
+        let [r, g, b, alpha] = surface.colour;
         if part.vertex_color.len() == part.positions.len() {
             vertex_colours.extend(
-                part.vertex_color.chunks_exact(3).map(|c| [channel(c[0]), channel(c[1]), channel(c[2]), alpha]),
+                part.vertex_color
+                    .chunks_exact(3)
+                    .map(|c| [mtl::channel(c[0]), mtl::channel(c[1]), mtl::channel(c[2]), alpha]),
             );
         } else {
             vertex_colours.resize(mesh.positions.len(), [r, g, b, alpha]);
         }
         // In range: u32 indices of vertices of this part, which were counted.
+        let first = mesh.triangle_count();
         mesh.indices.extend(part.indices.iter().map(|index| base.saturating_add(*index)));
+        let end = mesh.triangle_count();
+        match mesh.parts.last_mut() {
+            Some(last) if last.material == surface.material => last.triangles.end = end,
+            _ => mesh.parts.push(Part { triangles: first..end, material: surface.material }),
+        }
+    }
+    if !coordinates.is_empty() {
+        coordinates.resize(mesh.positions.len(), [0.0; 2]);
+    }
+    mesh.texture_coordinates = (!coordinates.is_empty()).then_some(coordinates);
+    if let [only] = &mesh.parts[..]
+        && *only.material == Material::default()
+    {
+        mesh.parts.clear();
     }
     mesh.normals = smooth.then_some(normals);
     mesh.colours = super::simplest(vertex_colours);

@@ -1,8 +1,14 @@
-//! Ways to look at a scene: its markings without the decal transform, its triangles as lines.
+//! Ways to look at a scene: its markings without the decal transform, its triangles as lines, other filters and light,
+//! an effect more or less.
 
+use std::borrow::Cow;
 use std::collections::HashSet;
+use std::sync::Arc;
 
-use crate::scene::{Batch, Colour, DEFAULT_SLOPE, Scene, Topology};
+use zga_abi::Effects;
+
+use super::Change;
+use crate::scene::{Batch, Colour, DEFAULT_SLOPE, FogFunction, Lighting, Material, Scene, TextureFilter, Topology};
 
 /// What is switched when a scene is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,27 +17,76 @@ pub struct Look {
     pub decals: bool,
     /// Triangles are drawn as their edges; hidden ones are removed by surfaces in the colour of the background.
     pub wireframe: bool,
+    /// How textures are read between texels, in place of what their materials say.
+    pub filter: Option<TextureFilter>,
+    /// Where light is worked out on what is lit, in place of what its materials say.
+    pub lighting: Option<Lighting>,
+    /// Fog where there is none, and none where there is.
+    pub other_fog: bool,
+    /// An effect more or less.
+    pub change: Option<Change>,
 }
 
 impl Default for Look {
     /// The scene as it is.
     fn default() -> Self {
-        Self { decals: true, wireframe: false }
+        Self { decals: true, wireframe: false, filter: None, lighting: None, other_fog: false, change: None }
     }
 }
 
 impl Look {
-    /// The scene's batches, looked at so.
+    /// The scene with the materials and lights that it is looked at with.
+    #[must_use]
+    pub fn scene(self, scene: &Scene) -> Cow<'_, Scene> {
+        let mut changes: Vec<Change> = self.change.into_iter().collect();
+        if self.other_fog {
+            let fogged = |batch: &Batch| batch.material.fog_function != FogFunction::None;
+            let any = scene.batches().iter().any(fogged);
+            changes.push(if any { Change::Without(Effects::FOG) } else { Change::Fog });
+        }
+        let mut seen = Cow::Borrowed(scene);
+        changes.into_iter().for_each(|change| change.scene(seen.to_mut()));
+        seen
+    }
+
+    /// Depths are compared and stored.
+    #[must_use]
+    pub fn tests_depth(self) -> bool {
+        self.change != Some(Change::Without(Effects::DEPTH))
+    }
+
+    /// The batches of a scene that [`Look::scene`] gave, looked at so.
     #[must_use]
     pub fn batches(self, scene: &Scene) -> Vec<Batch> {
         let mut batches = scene.batches();
+        if let Some(filter) = self.filter {
+            batches.iter_mut().for_each(|batch| filtered(batch, filter));
+        }
+        if let Some(lighting) = self.lighting {
+            let lit = batches.iter_mut().filter(|batch| batch.light != Lighting::None);
+            lit.for_each(|batch| batch.light = lighting);
+        }
         if self.wireframe {
             batches = batches.into_iter().flat_map(|batch| wires(batch, scene.background)).collect();
         }
         if !self.decals {
             batches.iter_mut().for_each(|batch| batch.slope = None);
         }
+        if let Some(change) = self.change {
+            change.batches(&mut batches);
+        }
         batches
+    }
+}
+
+/// Gives a textured batch another filter.
+fn filtered(batch: &mut Batch, filter: TextureFilter) {
+    if batch.material.texture.as_ref().is_none_or(|texture| texture.filter == filter) {
+        return;
+    }
+    let material = Arc::make_mut(&mut batch.material);
+    if let Some(texture) = &mut material.texture {
+        texture.filter = filter;
     }
 }
 
@@ -52,15 +107,19 @@ fn wires(mut batch: Batch, background: Colour) -> Vec<Batch> {
             }
         }
     }
+    // Edges keep fog, as a cue of depth, and blending.
+    let material = Material { texture: None, punch_through: None, ..(*batch.material).clone() };
     let edges = Batch {
         path: format!("{} (edges)", batch.path),
         topology: Topology::Lines,
+        material: Arc::new(material),
+        light: Lighting::None,
         slope: Some(batch.slope.unwrap_or(DEFAULT_SLOPE)),
         indices,
         ..batch.clone()
     };
     batch.colours.fill(background);
-    batch.translucent = false;
+    batch.make_plain();
     vec![batch, edges]
 }
 
@@ -89,7 +148,7 @@ mod tests {
 
     #[test]
     fn batches_without_decals_have_no_slope() {
-        let batches = Look { wireframe: true, decals: false }.batches(&square());
+        let batches = Look { wireframe: true, decals: false, ..Look::default() }.batches(&square());
         assert!(batches.iter().all(|batch| batch.slope.is_none()));
     }
 }

@@ -1,19 +1,21 @@
-//! A card with power, the driver that opened it, and the meshes of a scene in its video memory.
+//! A card with power, the driver that opened it, and the meshes and textures of a scene in its video memory.
 
+mod effects;
 mod survey;
 
 use std::io::Write;
 use std::time::Instant;
 
-use zga_abi::format;
-use zga_abi::{Bus, Effects};
+use zga_abi::Bus;
+use zga_abi::format::{self, DepthFunction};
 use zga_device::{Card, CardBus, CardOptions, Monitor};
 use zga_driver::bus::RecordingBus;
-use zga_driver::{Camera, Driver, DriverError, Frame, MeshBuffer, Rectangle, Target, TargetOptions, Vertex};
+use zga_driver::{Camera, Driver, DriverError, Frame, MeshBuffer, Rectangle, Target, TargetOptions, Vertex, Vertices};
 
 use super::{Asked, Cost, Look, Settings, check_kernel, za_ram};
 use crate::error::{Error, Result};
-use crate::scene::{self, Batch, Colour, Scene, Topology};
+use crate::scene::{self, Batch, Colour, Lighting, Scene, Topology};
+use effects::Textures;
 
 pub use survey::ZaWords;
 
@@ -31,10 +33,13 @@ pub struct Session<B: Bus = CardBus> {
     settings: Settings,
     size: [u32; 2],
     meshes: Vec<Uploaded>,
-    /// Camera and background of the frame that was drawn last.
-    view: Option<(scene::Camera, Colour)>,
+    textures: Textures,
+    /// What the frame that was drawn last was seen by.
+    view: Option<View>,
     /// Draw path of each draw packet of the frame that was drawn last.
     drawn: Vec<String>,
+    /// What there is to tell beside the driver's warnings.
+    untold: Vec<String>,
     warned: Vec<String>,
     // Last: the driver goes before its card.
     card: Card,
@@ -45,6 +50,27 @@ pub struct Session<B: Bus = CardBus> {
 struct Uploaded {
     batch: Batch,
     mesh: MeshBuffer,
+    /// Number of its texture.
+    texture: Option<usize>,
+}
+
+/// What a scene has beside its batches.
+#[derive(Clone, Debug)]
+struct View {
+    camera: scene::Camera,
+    background: Colour,
+    lights: Vec<zga_driver::Light>,
+    ambient: Colour,
+    /// Depths are compared and stored.
+    tests_depth: bool,
+}
+
+impl View {
+    fn of(scene: &Scene, look: Look) -> View {
+        let lights = scene.lights.iter().map(effects::light).collect();
+        let Scene { camera, background, ambient, .. } = *scene;
+        View { camera, background, lights, ambient, tests_depth: look.tests_depth() }
+    }
 }
 
 impl Session<CardBus> {
@@ -94,14 +120,18 @@ fn power_on(name: &str, scene: &Scene, asked: &Asked) -> Result<Card> {
     Card::power_on(options).map_err(|reason| Error::Card { place: name.to_owned(), reason })
 }
 
-/// Bytes of video memory for a scene: two frame buffers, a Z buffer, a copy to read back, and room for its vertices,
-/// twice, since a frame's may still be in use while the next one's are written.
+/// Bytes of video memory for a scene: two frame buffers, a Z buffer, a copy to read back, and room for its vertices and
+/// textures, twice, since a frame's may still be in use while the next one's are written.
 fn video_memory(scene: &Scene) -> u32 {
     let pixels = (u64::from(scene.size[0]) + 128) * u64::from(scene.size[1]);
     // As a wireframe a batch has its vertices twice, and two indices for each of its triangles' edges.
-    let words = |batch: &Batch| 2 * 4 * batch.positions.len() + 3 * batch.indices.len() + 64;
-    let words: usize = scene.batches().iter().map(words).sum();
-    let bytes = 4 * 4 * pixels + 2 * 4 * words as u64 + (4 << 20);
+    let words = |batch: &Batch| {
+        let effects = normals(batch).map_or(0, <[_]>::len) * 3 + coordinates(batch).map_or(0, <[_]>::len) * 2;
+        2 * 4 * batch.positions.len() + effects + 3 * batch.indices.len() + 64
+    };
+    let batches = scene.batches();
+    let words: usize = batches.iter().map(words).sum();
+    let bytes = 4 * 4 * pixels + 2 * (4 * words as u64 + effects::texture_bytes(&batches)) + (4 << 20);
     bytes.next_multiple_of(MEMORY_STEP).clamp(4 * MEMORY_STEP, MOST_MEMORY) as u32
 }
 
@@ -128,8 +158,10 @@ impl<B: Bus> Session<B> {
             settings,
             size: scene.size,
             meshes: Vec::new(),
+            textures: Textures::default(),
             view: None,
             drawn: Vec::new(),
+            untold: Vec::new(),
             warned: Vec::new(),
             card,
         })
@@ -171,9 +203,11 @@ impl<B: Bus> Session<B> {
         self.drawn.get(draw as usize).map(String::as_str)
     }
 
-    /// What the driver found worth telling since the last call, each line once in a session.
+    /// What is worth telling since the last call, each line once in a session: what the driver found, and what the card
+    /// has no unit for.
     pub fn take_warnings(&mut self) -> Vec<String> {
         let lines = self.driver.take_warnings().into_iter().map(|warning| warning.to_string());
+        let lines = lines.chain(std::mem::take(&mut self.untold));
         let fresh: Vec<String> = lines.filter(|line| !self.warned.contains(line)).collect();
         self.warned.extend(fresh.iter().cloned());
         fresh
@@ -184,22 +218,26 @@ impl<B: Bus> Session<B> {
     /// # Errors
     /// [`Error::Driver`] with the path of the draw at fault.
     pub fn draw(&mut self, scene: &Scene, look: Look) -> Result<()> {
-        let batches = look.batches(scene);
-        self.upload(batches)?;
-        self.submit(scene)
+        let scene = look.scene(scene);
+        self.upload(look.batches(&scene))?;
+        self.submit(&View::of(&scene, look))
     }
 
     /// Draws what is in video memory and shows it.
-    fn submit(&mut self, scene: &Scene) -> Result<()> {
-        let view = (scene.camera, scene.background);
-        self.view = Some(view);
+    fn submit(&mut self, view: &View) -> Result<()> {
+        self.view = Some(view.clone());
         self.encode(view, None)?;
         self.driver.present(&self.target).map_err(Error::driver(&self.name))
     }
 
-    /// Puts the batches into video memory; those that are there already stay.
-    fn upload(&mut self, batches: Vec<Batch>) -> Result<()> {
+    /// Puts the batches into video memory, with their textures; those that are there already stay.
+    fn upload(&mut self, mut batches: Vec<Batch>) -> Result<()> {
+        let lacking = effects::reduce(&mut batches, self.driver.card_info().effects);
+        if !lacking.is_empty() {
+            self.untold.push(format!("this card has no unit for {}; drawn without", lacking.join(", ")));
+        }
         let mut old = std::mem::take(&mut self.meshes).into_iter();
+        self.textures.begin();
         for batch in batches {
             let place = || Error::driver(format!("{}: {}", self.name, batch.path));
             let mesh = match old.next() {
@@ -208,34 +246,40 @@ impl<B: Bus> Session<B> {
                     if let Some(known) = other {
                         self.driver.free_mesh(known.mesh).map_err(place())?;
                     }
-                    let vertices = batch.positions.iter().zip(&batch.colours);
-                    let vertices: Vec<Vertex> = vertices.map(|(at, colour)| Vertex::new(*at, *colour)).collect();
-                    self.driver
-                        .upload_mesh(topology(batch.topology), &vertices, Some(&batch.indices))
-                        .map_err(place())?
+                    create_mesh(&mut self.driver, &batch).map_err(place())?
                 }
             };
-            self.meshes.push(Uploaded { batch, mesh });
+            let texture = match &batch.material.texture {
+                Some(texture) => self.textures.place(&mut self.driver, texture).map_err(place())?,
+                None => None,
+            };
+            self.meshes.push(Uploaded { batch, mesh, texture });
         }
         for known in old {
             self.driver.free_mesh(known.mesh).map_err(Error::driver(&self.name))?;
         }
-        Ok(())
+        self.textures.end(&mut self.driver).map_err(Error::driver(&self.name))
     }
 
     /// Draws what is in video memory, all of it or what lies inside `cut`; the clear is of everything.
-    fn encode(&mut self, (from, background): (scene::Camera, Colour), cut: Option<Rectangle>) -> Result<()> {
-        let Self { name, driver, target, meshes, drawn, settings, .. } = self;
+    fn encode(&mut self, view: &View, cut: Option<Rectangle>) -> Result<()> {
+        let Self { name, driver, target, meshes, textures, drawn, settings, .. } = self;
         let masks = settings.is_antialiased();
-        let layers = masks && driver.card_info().effects.contains(Effects::BLEND);
         let fault = || Error::driver(name.as_str());
         drawn.clear();
-        driver.set_camera(camera(&from)).map_err(fault())?;
+        driver.set_camera(camera(&view.camera)).map_err(fault())?;
+        // Only batches that are lit have normals in video memory; the others do not ask.
+        if meshes.iter().any(|uploaded| uploaded.batch.light != Lighting::None) {
+            driver.set_lights(&view.lights).map_err(fault())?;
+            driver.set_scene_ambient(view.ambient).map_err(fault())?;
+        }
+        driver.set_depth_function(if view.tests_depth { DepthFunction::Less } else { DepthFunction::Always });
+        driver.set_depth_write(view.tests_depth);
         driver.begin_scene(target).map_err(fault())?;
         driver.set_scissor(None);
-        driver.clear(Some(background), Some(1.0)).map_err(fault())?;
+        driver.clear(Some(view.background), Some(1.0)).map_err(fault())?;
         driver.set_scissor(cut);
-        for Uploaded { batch, mesh } in meshes {
+        for Uploaded { batch, mesh, texture } in meshes {
             if mesh.primitives() == 0 {
                 continue;
             }
@@ -246,7 +290,8 @@ impl<B: Bus> Session<B> {
                 driver.set_line_width(batch.extent.into()).map_err(place())?;
                 driver.set_point_size(batch.extent.into()).map_err(place())?;
             }
-            driver.set_blend(layers && batch.translucent).map_err(place())?;
+            let texture = texture.and_then(|number| textures.get(number));
+            set_material(driver, batch, texture).map_err(place())?;
             match batch.slope {
                 Some(slope) => driver.decal(slope.into(), |driver| driver.draw_mesh(mesh)),
                 None => driver.draw_mesh(mesh),
@@ -262,13 +307,14 @@ impl<B: Bus> Session<B> {
     /// # Errors
     /// As [`Session::draw`].
     pub fn frame(&mut self, scene: &Scene, look: Look) -> Result<(Frame, Cost)> {
-        let batches = look.batches(scene);
-        self.upload(batches)?;
+        let scene = look.scene(scene);
+        self.upload(look.batches(&scene))?;
+        let view = View::of(&scene, look);
         let fault = |name: &str| Error::driver(name.to_owned());
         self.driver.finish().map_err(fault(&self.name))?;
         self.driver.clear_counters();
         let begun = Instant::now();
-        self.submit(scene)?;
+        self.submit(&view)?;
         self.driver.finish().map_err(fault(&self.name))?;
         let host = begun.elapsed();
         // Before the capture, which has the card compose the frame once more.
@@ -287,10 +333,10 @@ impl<B: Bus> Session<B> {
     /// # Errors
     /// [`Error::Driver`].
     pub fn depths(&mut self) -> Result<Vec<u32>> {
-        let depths = match (self.driver.capture_depth(&self.target), self.view) {
+        let depths = match (self.driver.capture_depth(&self.target), self.view.clone()) {
             (Err(DriverError::DepthNotKept { .. }), Some(view)) => {
                 self.driver.set_keep_depth(true);
-                let drawn = self.encode(view, None);
+                let drawn = self.encode(&view, None);
                 self.driver.set_keep_depth(false);
                 drawn?;
                 self.driver.capture_depth(&self.target)
@@ -301,9 +347,53 @@ impl<B: Bus> Session<B> {
     }
 }
 
+/// Normals of a batch, where they are in use.
+fn normals(batch: &Batch) -> Option<&[[f32; 3]]> {
+    batch.normals.as_deref().filter(|_| batch.light != Lighting::None)
+}
+
+/// Texture coordinates of a batch, where they are in use.
+fn coordinates(batch: &Batch) -> Option<&[[f32; 2]]> {
+    batch.texture_coordinates.as_deref().filter(|_| batch.material.texture.is_some())
+}
+
 /// Whether two batches have the same words in video memory.
 fn same_vertices(a: &Batch, b: &Batch) -> bool {
     (a.topology, &a.indices, &a.colours, &a.positions) == (b.topology, &b.indices, &b.colours, &b.positions)
+        && (normals(a), coordinates(a)) == (normals(b), coordinates(b))
+}
+
+/// Copies a batch into video memory: vertices with what its material calls for, and indices.
+fn create_mesh<B: Bus>(driver: &mut Driver<B>, batch: &Batch) -> std::result::Result<MeshBuffer, DriverError> {
+    let vertices = batch.positions.iter().zip(&batch.colours);
+    let vertices: Vec<Vertex> = vertices.map(|(at, colour)| Vertex::new(*at, *colour)).collect();
+    let mut list = Vertices::coloured(&vertices);
+    if let Some(normals) = normals(batch) {
+        list = list.normals(normals);
+    }
+    if let Some(coordinates) = coordinates(batch) {
+        list = list.coordinates(coordinates);
+    }
+    driver.create_mesh(topology(batch.topology), &list, Some(&batch.indices))
+}
+
+/// Sets what the draw of a batch calls for: texture, holes, light, fog, blending.
+fn set_material<B: Bus>(
+    driver: &mut Driver<B>,
+    batch: &Batch,
+    texture: Option<&zga_driver::Texture>,
+) -> std::result::Result<(), DriverError> {
+    let material = &batch.material;
+    // A mesh without texture coordinates has no use for the texture that is set.
+    if let (Some(wanted), Some(texture)) = (&material.texture, texture) {
+        driver.set_texture(Some(&effects::texture_state(wanted, texture)))?;
+        driver.set_punch_through(material.punch_through)?;
+    }
+    if batch.light != Lighting::None {
+        driver.set_material(effects::material(material, batch.light))?;
+    }
+    driver.set_fog(effects::fog(material))?;
+    driver.set_blend(effects::blend_mode(material.blend).filter(|_| batch.translucent))
 }
 
 fn topology(topology: Topology) -> format::Topology {

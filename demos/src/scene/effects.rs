@@ -1,11 +1,21 @@
-//! Lights and materials, and which of their fields call for effects.
+//! Lights and materials.
 //!
 //! Names follow the registers of the tile unit's records (CN 1275225 A): a light has position, direction,
 //! type, attenuation cut-off, spot exponent, colour and ambient; a material shininess, specular, emission,
 //! blending, fog and a texture.
 
-use super::settings::named_values;
-use super::{Colour, Scene, SubpixelGrid};
+use std::sync::Arc;
+
+pub use zga_abi::format::{TextureFormat, TextureFunction};
+
+use super::Colour;
+use super::settings::{named_values, names_of};
+use crate::texture::{Indexed, Picture};
+
+/// Ways to store texels, by name.
+pub const TEXTURE_FORMATS: [(&str, TextureFormat); TextureFormat::ALL.len()] = names_of!(TextureFormat);
+/// Ways to combine a texel with the colour of the polygon, by name.
+pub const TEXTURE_FUNCTIONS: [(&str, TextureFunction); TextureFunction::ALL.len()] = names_of!(TextureFunction);
 
 named_values! {
     /// What a light is like.
@@ -30,6 +40,8 @@ named_values! {
         Add = "add",
         /// The colours are multiplied.
         Multiply = "multiply",
+        /// By its alpha, which its colour is multiplied by already.
+        Premultiplied = "premultiplied",
     }
 }
 
@@ -44,6 +56,20 @@ named_values! {
         Exponential = "exponential",
         /// Exponentially with the square.
         ExponentialSquared = "exponential-squared",
+        /// Depth cueing: the surface's share is `depth_cue_offset` less `depth_cue_scale` for each world unit.
+        DepthCue = "depth-cue",
+    }
+}
+
+named_values! {
+    /// Where the light that falls on a surface is worked out.
+    Lighting {
+        /// Nowhere: colours are shown as they are.
+        None = "none",
+        /// At each vertex.
+        Vertex = "vertex",
+        /// At each pixel.
+        Pixel = "pixel",
     }
 }
 
@@ -78,9 +104,14 @@ pub struct Light {
     pub ambient: Colour,
 }
 
-/// How a surface looks. The default is plain: opaque, the vertices' colours, no effect.
+/// How a surface looks. The default is plain: opaque, the vertices' colours, no effect. What light falls on is the
+/// vertices' colours, so a material has no colour of its own: loaders of meshes put it there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
+    /// Where light is worked out; without it at each vertex in a scene that has lights, else nowhere.
+    pub light: Option<Lighting>,
+    /// Normals that point away from the viewer are turned round.
+    pub two_sided: bool,
     /// Sharpness of the highlight, 0..=128.
     pub shininess: f32,
     /// Colour of the highlight.
@@ -99,6 +130,10 @@ pub struct Material {
     pub fog_end: f32,
     /// Colour of the fog.
     pub fog_colour: Colour,
+    /// Depth cueing: what of the surface's share a world unit of distance takes.
+    pub depth_cue_scale: f32,
+    /// Depth cueing: the surface's share at the viewer.
+    pub depth_cue_offset: f32,
     /// The texture.
     pub texture: Option<Texture>,
 }
@@ -106,6 +141,8 @@ pub struct Material {
 impl Default for Material {
     fn default() -> Self {
         Self {
+            light: None,
+            two_sided: false,
             shininess: 0.0,
             specular: [0, 0, 0, 255],
             emission: [0, 0, 0, 255],
@@ -115,6 +152,8 @@ impl Default for Material {
             fog_density: 0.0,
             fog_end: 1.0,
             fog_colour: [0, 0, 0, 255],
+            depth_cue_scale: 0.0,
+            depth_cue_offset: 1.0,
             texture: None,
         }
     }
@@ -123,10 +162,22 @@ impl Default for Material {
 /// A texture of a material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Picture file, relative to the scene file.
+    /// Picture file, relative to the scene file; of a picture that code made, what it is called in messages.
     pub file: String,
+    /// The picture, once [`crate::scene::Scene::load_meshes`] has read it; nothing is textured before.
+    pub image: Option<Arc<Picture>>,
+    /// How texels are stored on the card.
+    pub format: TextureFormat,
+    /// How a texel is combined with the colour of the polygon.
+    pub function: TextureFunction,
+    /// Constant colour of the function `blend`; its alpha is not in use.
+    pub colour: Colour,
     /// How it is read between texels.
     pub filter: TextureFilter,
+    /// Smaller levels are made and used where the picture is seen from afar.
+    pub mip_map: bool,
+    /// Added to the level of detail, levels, -128..128.
+    pub bias: f32,
     /// First texel used, x and y.
     pub offset: [u32; 2],
     /// Texels used, x and y; none for the whole picture.
@@ -135,32 +186,45 @@ pub struct Texture {
     pub repeat: [bool; 2],
     /// Every other repetition mirrored, in x and y.
     pub mirror: [bool; 2],
-    /// Colours of a 4-bit texture, at most 16.
+    /// Colours of a texture with a palette, at most as many as its format has; without them they are found.
     pub palette: Option<Vec<Colour>>,
 }
 
-impl Scene {
-    /// The paths of all fields of lights and materials that call for an effect, in the file's order of names:
-    /// empty for a scene of plain colours. A card without the units refuses or ignores what is listed here.
-    /// Blending by alpha is the sub-pixel unit's, so it is listed where `antialias` is off.
+impl Texture {
+    /// A texture of a picture in memory: modulated, bilinear, 32 bits a texel, the whole picture, once.
     #[must_use]
-    pub fn unsupported_effects(&self, antialias: SubpixelGrid) -> Vec<String> {
-        let mut paths: Vec<String> = (0..self.lights.len()).map(|index| format!("lights[{index}]")).collect();
-        let (plain, layers) = (Material::default(), antialias == SubpixelGrid::Off);
-        for (name, material) in &self.materials {
-            let called = [
-                ("shininess", material.shininess != plain.shininess),
-                ("specular", material.specular != plain.specular),
-                ("emission", material.emission != plain.emission),
-                ("blend", material.blend != plain.blend && material.blend != Blend::Alpha),
-                ("blend (translucency needs antialias for now)", layers && material.blend == Blend::Alpha),
-                ("punch_through", material.punch_through.is_some()),
-                ("fog_function", material.fog_function != plain.fog_function),
-                ("texture", material.texture.is_some()),
-            ];
-            let called = called.iter().filter(|(_, called)| *called);
-            paths.extend(called.map(|(field, _)| format!("materials.{name}.{field}")));
+    pub fn of(image: impl Into<Arc<Picture>>) -> Self {
+        Self { image: Some(image.into()), ..Self::named(String::new()) }
+    }
+
+    /// The same of a picture in a file that is not read yet.
+    pub(crate) fn named(file: String) -> Self {
+        Self {
+            file,
+            image: None,
+            format: TextureFormat::Rgba8888,
+            function: TextureFunction::Modulate,
+            colour: [0, 0, 0, 255],
+            filter: TextureFilter::Bilinear,
+            mip_map: false,
+            bias: 0.0,
+            offset: [0, 0],
+            size: None,
+            repeat: [false; 2],
+            mirror: [false; 2],
+            palette: None,
         }
-        paths
+    }
+
+    /// The picture in the palette of the texture's format: that of [`Texture::palette`], else one of the picture's own
+    /// colours. None for a format without a palette or a picture that is not there.
+    #[must_use]
+    pub fn indexed(&self) -> Option<Indexed> {
+        let most = self.format.palette() as usize;
+        let image = self.image.as_ref().filter(|_| most > 0)?;
+        Some(match &self.palette {
+            Some(palette) => image.in_palette(&palette[..palette.len().min(most)]),
+            None => image.quantised(most),
+        })
     }
 }

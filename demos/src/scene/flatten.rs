@@ -1,15 +1,16 @@
 //! From the draw list to flat batches of triangles, lines and points, the form in which a driver takes them.
 //!
 //! Duties: joins decals with what they hold, meshes with their feature edges, cuts curves into chords, gives every
-//! vertex its colour and every draw an object tag. Positions stay in world units (pixels with the screen camera);
-//! the card does the transform.
+//! vertex its colour and every draw an object tag, and settles which effects a batch calls for. Meshes are in
+//! [`super::parts`]. Positions stay in world units (pixels with the screen camera); the card does the transform.
 
-use super::camera::{wide, wide_matrix};
-use super::{Blend, Camera, Colour, Colours, Curve, CurveKind, Draw, IDENTITY, Matrix, MeshDraw, Primitives, Scene};
-use crate::mesh::Mesh;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
-/// Angle between two faces from which their common edge is a feature, in degrees.
-const FEATURE_ANGLE_DEGREES: f32 = 30.0;
+use super::{
+    Blend, Camera, Colour, Colours, Curve, CurveKind, Draw, IDENTITY, Lighting, Material, Matrix, Primitives, Scene,
+    narrow, wide,
+};
 
 /// Most chords of one curve segment, and of all segments of a curve.
 const MAX_CHORDS: usize = 1024;
@@ -39,7 +40,7 @@ pub struct Batch {
     pub colours: Vec<Colour>,
     /// Normals for each position, where the draw has them.
     pub normals: Option<Vec<[f32; 3]>>,
-    /// Texture coordinates for each position, where the draw has them.
+    /// Texture coordinates for each position, where the draw has them (and, of a mesh, its material a texture).
     pub texture_coordinates: Option<Vec<[f32; 2]>>,
     /// Corners, as indices of positions; every one in range.
     pub indices: Vec<u32>,
@@ -47,9 +48,12 @@ pub struct Batch {
     pub transform: Matrix,
     /// Slope of the decal transform, where the batch is a surface marking.
     pub slope: Option<f32>,
-    /// Name of a material of the scene.
-    pub material: Option<String>,
-    /// Alpha is translucency: the material's blend is `alpha`.
+    /// How the surface looks: the draw's material or that of a mesh's part. It has a texture only together with its
+    /// picture and with texture coordinates, and holes only with a texture.
+    pub material: Arc<Material>,
+    /// Where light is worked out; not `none` only together with normals. What the material asks for is settled here.
+    pub light: Lighting,
+    /// What lies behind shows through: the material's blend is not `opaque`.
     pub translucent: bool,
     /// Width of lines or side of points, in pixels, where they are anti-aliased.
     pub extent: f32,
@@ -61,7 +65,14 @@ impl Scene {
     /// The scene as flat batches, in drawing order. A mesh that is not loaded gives none.
     #[must_use]
     pub fn batches(&self) -> Vec<Batch> {
-        let mut flattener = Flattener { scene: self, batches: Vec::new(), next_tag: free_tag(&self.draw) };
+        let shared = |(name, material): (&String, &Material)| (name.clone(), Arc::new(material.clone()));
+        let mut flattener = Flattener {
+            scene: self,
+            materials: self.materials.iter().map(shared).collect(),
+            plain: Arc::default(),
+            batches: Vec::new(),
+            next_tag: free_tag(&self.draw),
+        };
         for (index, draw) in self.draw.iter().enumerate() {
             flattener.draw(draw, format!("draw[{index}]"), None);
         }
@@ -80,9 +91,12 @@ fn free_tag(draws: &[Draw]) -> u32 {
     draws.iter().map(of).max().unwrap_or(0)
 }
 
-struct Flattener<'a> {
-    scene: &'a Scene,
-    batches: Vec<Batch>,
+/// Batches while they are made.
+pub(super) struct Flattener<'a> {
+    pub(super) scene: &'a Scene,
+    materials: BTreeMap<String, Arc<Material>>,
+    plain: Arc<Material>,
+    pub(super) batches: Vec<Batch>,
     next_tag: u32,
 }
 
@@ -106,7 +120,7 @@ impl Flattener<'_> {
         }
     }
 
-    fn tag(&mut self, asked: Option<u32>) -> u32 {
+    pub(super) fn tag(&mut self, asked: Option<u32>) -> u32 {
         asked.unwrap_or_else(|| {
             let tag = self.next_tag;
             self.next_tag = tag.wrapping_add(1);
@@ -114,9 +128,9 @@ impl Flattener<'_> {
         })
     }
 
-    fn translucent(&self, material: Option<&str>) -> bool {
-        let material = material.and_then(|name| self.scene.materials.get(name));
-        material.is_some_and(|material| material.blend == Blend::Alpha)
+    /// The material of this name; the default one without a name.
+    pub(super) fn material(&self, name: Option<&str>) -> Arc<Material> {
+        Arc::clone(name.and_then(|name| self.materials.get(name)).unwrap_or(&self.plain))
     }
 
     fn primitives(&mut self, draw: &Primitives, topology: Topology, path: String, slope: Option<f32>) {
@@ -131,12 +145,14 @@ impl Flattener<'_> {
             indices: draw.indices.clone().unwrap_or_else(in_order),
             transform: IDENTITY,
             slope,
-            material: draw.material.clone(),
-            translucent: self.translucent(draw.material.as_deref()),
+            material: self.material(draw.material.as_deref()),
+            light: Lighting::None,
+            translucent: false,
             extent: draw.extent.unwrap_or(1.0),
             tag: self.tag(draw.tag),
         };
         batch.paint(&draw.colours);
+        batch.settle(self.scene);
         self.batches.push(batch);
     }
 
@@ -149,7 +165,7 @@ impl Flattener<'_> {
         let joins = |end: &u32| curve.kind == CurveKind::Polyline || !end.is_multiple_of(per_segment);
         let indices = (1..=last).filter(joins).flat_map(chained).collect();
         let tag = self.tag(curve.tag);
-        self.batches.push(Batch {
+        let mut batch = Batch {
             path,
             topology: Topology::Lines,
             positions,
@@ -159,81 +175,95 @@ impl Flattener<'_> {
             indices,
             transform: IDENTITY,
             slope,
-            material: curve.material.clone(),
-            translucent: self.translucent(curve.material.as_deref()),
+            material: self.material(curve.material.as_deref()),
+            light: Lighting::None,
+            translucent: false,
             extent: curve.width.unwrap_or(1.0),
             tag,
-        });
-    }
-
-    fn mesh(&mut self, named: &MeshDraw, mesh: &Mesh, path: String, slope: Option<f32>) {
-        let tag = self.tag(named.tag);
-        let base = Batch {
-            path,
-            topology: Topology::Triangles,
-            positions: mesh.positions.clone(),
-            colours: Vec::new(),
-            normals: mesh.normals.clone(),
-            texture_coordinates: None,
-            indices: Vec::new(),
-            transform: named.transform,
-            slope,
-            material: named.material.clone(),
-            translucent: self.translucent(named.material.as_deref()),
-            extent: 1.0,
-            tag,
         };
-        let plain = named.colour.map_or_else(|| mesh.colours.clone(), Colours::One);
-        // The viewer in the mesh's own space, since that is where its normals are.
-        let viewer = match self.scene.camera.placement() {
-            Some([eye, ..]) => wide_matrix(&named.transform).inverse().transform_point3(wide(eye)),
-            None => wide(mesh.bounds().centre) - glam::DVec3::Z * 1e6,
-        };
-        if !mesh.indices.is_empty() {
-            let mut faces = Batch { indices: mesh.indices.clone(), ..base.clone() };
-            let lit = self.scene.lights.is_empty() && viewer.is_finite();
-            faces.paint(&if lit { mesh.baked(&plain, viewer) } else { plain.clone() });
-            self.batches.push(faces);
-        }
-        for (topology, indices) in [(Topology::Lines, &mesh.lines), (Topology::Points, &mesh.points)] {
-            if !indices.is_empty() {
-                let mut loose = Batch { topology, indices: indices.clone(), ..base.clone() };
-                loose.paint(&plain);
-                self.batches.push(loose);
-            }
-        }
-        if named.edges {
-            let indices = mesh.feature_edges(FEATURE_ANGLE_DEGREES).into_flattened();
-            let tag = self.tag(None);
-            let path = format!("{}.mesh.edges", base.path);
-            let slope = Some(named.slope);
-            let mut edges = Batch { path, topology: Topology::Lines, indices, slope, tag, ..base };
-            edges.paint(&Colours::One(named.edge_colour));
-            self.batches.push(edges);
-        }
+        batch.settle(self.scene);
+        self.batches.push(batch);
     }
 }
 
 impl Batch {
+    /// The batch without any effect of its material: no light, no texture, no blending.
+    pub fn make_plain(&mut self) {
+        self.material = Arc::default();
+        self.light = Lighting::None;
+        self.translucent = false;
+        self.texture_coordinates = None;
+    }
+
+    /// Leaves of the material what the batch has the means for, and settles where light is worked out.
+    pub(super) fn settle(&mut self, scene: &Scene) {
+        let textured = self.texture_coordinates.is_some()
+            && self.material.texture.as_ref().is_some_and(|texture| texture.image.is_some());
+        if !textured && (self.material.texture.is_some() || self.material.punch_through.is_some()) {
+            let plain = Material { texture: None, punch_through: None, ..(*self.material).clone() };
+            self.material = Arc::new(plain);
+        }
+        self.translucent = self.material.blend != Blend::Opaque;
+        let usual = if scene.lights.is_empty() { Lighting::None } else { Lighting::Vertex };
+        self.light = self.material.light.unwrap_or(usual);
+        if self.light == Lighting::None || self.normals.is_some() {
+            return;
+        }
+        // On the screen a triangle faces the viewer, so it is lit only where that is asked for.
+        let on_screen = scene.camera == Camera::Screen && self.material.light.is_none();
+        if self.topology == Topology::Triangles && !on_screen {
+            self.add_flat_normals();
+        } else {
+            self.light = Lighting::None;
+        }
+    }
+
+    /// Gives each triangle the normal of its plane. Which side is the outer one is a guess from the order of its
+    /// corners, so it is lit on the side that is seen.
+    fn add_flat_normals(&mut self) {
+        self.take_corners_apart();
+        let mut normals = Vec::with_capacity(self.positions.len());
+        for corners in self.positions.as_chunks::<3>().0 {
+            let [a, b, c] = corners.map(wide);
+            normals.extend([narrow((b - a).cross(c - a).normalize_or_zero()); 3]);
+        }
+        // What is no whole triangle draws nothing.
+        normals.resize(self.positions.len(), [0.0; 3]);
+        self.normals = Some(normals);
+        if !self.material.two_sided {
+            self.material = Arc::new(Material { two_sided: true, ..(*self.material).clone() });
+        }
+    }
+
+    /// Gives each corner a vertex of its own.
+    fn take_corners_apart(&mut self) {
+        let indices = std::mem::take(&mut self.indices);
+        self.positions = each(&indices, &self.positions);
+        self.colours = each(&indices, &self.colours);
+        self.normals = self.normals.take().map(|all| each(&indices, &all));
+        self.texture_coordinates = self.texture_coordinates.take().map(|all| each(&indices, &all));
+        self.indices = (0..indices.len() as u32).collect();
+    }
+
     /// Gives each position its colour. Colours by face take the corners of different faces apart.
-    fn paint(&mut self, colours: &Colours) {
-        let indices = &self.indices;
+    pub(super) fn paint(&mut self, colours: &Colours) {
         match colours {
             Colours::One(colour) => self.colours = vec![*colour; self.positions.len()],
             Colours::PerVertex(list) => self.colours.clone_from(list),
             Colours::PerFace(list) => {
+                self.colours = vec![[255; 4]; self.positions.len()];
+                self.take_corners_apart();
                 self.colours = list.iter().flat_map(|colour| [*colour; 3]).collect();
-                self.positions = indices.iter().map(|i| self.positions[*i as usize]).collect();
-                let normals = self.normals.take();
-                self.normals = normals.map(|all| indices.iter().map(|i| all[*i as usize]).collect());
-                let coordinates = self.texture_coordinates.take();
-                self.texture_coordinates = coordinates.map(|all| indices.iter().map(|i| all[*i as usize]).collect());
-                self.indices = (0..self.positions.len() as u32).collect();
             }
         }
         // A value built by hand may have fewer colours than corners; a missing one is white.
         self.colours.resize(self.positions.len(), [255; 4]);
     }
+}
+
+/// What a list holds at these places.
+pub(super) fn each<T: Copy>(places: &[u32], list: &[T]) -> Vec<T> {
+    places.iter().map(|place| list[*place as usize]).collect()
 }
 
 fn segments_of(curve: &Curve) -> usize {

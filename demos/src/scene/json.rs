@@ -6,9 +6,11 @@
 use std::cell::Cell;
 use std::fmt;
 use std::ops::RangeInclusive;
+use std::path::Path;
 
 use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 
+use crate::error::Error;
 use crate::limits::MAX_JSON_VALUES;
 
 /// One JSON value.
@@ -52,6 +54,11 @@ impl Fault {
     pub(super) fn in_item(mut self, index: usize) -> Self {
         self.steps.push(Step::Item(index));
         self
+    }
+
+    /// As an error of the scene file `file`.
+    pub(super) fn in_file(self, file: &Path) -> Error {
+        Error::Field { file: file.to_path_buf(), path: self.path(), expected: self.expected, found: self.found }
     }
 
     /// The path from the root, for example `draw[2].triangles.vertices[1]`.

@@ -6,31 +6,39 @@
 
 mod camera;
 mod effects;
+#[cfg(test)]
+mod effects_tests;
 mod flatten;
 mod json;
+mod load;
 mod parse;
 mod parse_draw;
 mod parse_effects;
 #[cfg(test)]
 mod parse_tests;
+mod parts;
+#[cfg(test)]
+mod parts_tests;
 mod settings;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 pub use camera::{Camera, Orthographic, Perspective};
 pub(crate) use camera::{narrow, wide};
-pub use effects::{Blend, FogFunction, Light, LightType, Material, Texture, TextureFilter};
+pub use effects::{
+    Blend, FogFunction, Light, LightType, Lighting, Material, TEXTURE_FORMATS, TEXTURE_FUNCTIONS, Texture,
+    TextureFilter, TextureFormat, TextureFunction,
+};
 pub use flatten::{Batch, Topology};
+pub use load::load;
 pub use settings::{
     ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, EndTest, FIDELITIES, Fidelity, HIDDEN_SURFACES,
     HiddenSurface, MOST_SUBPIXEL_POOL, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelGrid, SubpixelResolve, SystolicSettings,
     TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, TokenColour, TokenPorts, ZA_PREDICTIONS, ZaPrediction,
 };
 
-use crate::error::{Error, Result};
-use crate::limits;
 use crate::mesh::Mesh;
 
 /// A colour: red, green, blue, alpha, each 0..=255.
@@ -41,6 +49,13 @@ pub type Matrix = [f32; 16];
 
 /// The matrix that changes nothing.
 pub const IDENTITY: Matrix = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+
+/// No light.
+pub(crate) const DARK: Colour = [0, 0, 0, 255];
+
+/// Light everywhere in a scene that shows a mesh with lights of its own: what no light of the file meets is told from
+/// the background.
+const SHOWN_AMBIENT: Colour = [40, 40, 40, 255];
 
 /// The slope that markings survive when a decal names none.
 pub const DEFAULT_SLOPE: f32 = 8.0;
@@ -56,6 +71,8 @@ pub struct Scene {
     pub camera: Camera,
     /// What the scene asks of the card; flags of the command line override it.
     pub card: CardSettings,
+    /// Light that is everywhere, where surfaces are lit; its alpha is not in use.
+    pub ambient: Colour,
     /// Lights, by position in the list.
     pub lights: Vec<Light>,
     /// Materials by name.
@@ -211,17 +228,6 @@ impl MeshDraw {
     }
 }
 
-/// Reads a scene file and the meshes that it names.
-///
-/// # Errors
-/// Names the file, and the field or the line, that is at fault.
-pub fn load(file: &Path) -> Result<Scene> {
-    let bytes = limits::read_file(file)?;
-    let mut scene = Scene::from_json(&bytes, file)?;
-    scene.load_meshes(file.parent().unwrap_or(Path::new("")), file)?;
-    Ok(scene)
-}
-
 impl Scene {
     /// An empty scene with the screen camera and nothing asked of the card.
     #[must_use]
@@ -231,83 +237,23 @@ impl Scene {
             background,
             camera: Camera::Screen,
             card: CardSettings::default(),
+            ambient: DARK,
             lights: Vec::new(),
             materials: BTreeMap::new(),
             draw: Vec::new(),
         }
     }
 
-    /// A scene that shows one mesh from a three-quarter view.
+    /// A scene that shows one mesh from a three-quarter view, in the light of its file if that has any.
     #[must_use]
     pub fn showing(mesh: Mesh, size: [u32; 2]) -> Self {
         let mut scene = Self::new(size, [24, 29, 43, 255]);
+        if !mesh.lights.is_empty() {
+            scene.lights.clone_from(&mesh.lights);
+            scene.ambient = SHOWN_AMBIENT;
+        }
         scene.camera = Camera::Perspective(mesh.default_camera(size));
         scene.draw.push(Draw::Mesh(MeshDraw::of(mesh)));
         scene
     }
-
-    /// Reads every mesh that the scene names and does not hold yet; `scene_file` is for messages.
-    /// A file that is named twice is read once.
-    ///
-    /// # Errors
-    /// The first mesh that cannot be read, with the field that names it.
-    pub fn load_meshes(&mut self, folder: &Path, scene_file: &Path) -> Result<()> {
-        let mut known: BTreeMap<PathBuf, Arc<Mesh>> = BTreeMap::new();
-        load_meshes_of(&mut self.draw, "draw", folder, scene_file, &mut known)
-    }
-
-    /// What was left out or guessed while the meshes were read, a line each.
-    #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
-        fn collect(draws: &[Draw], into: &mut Vec<String>) {
-            for draw in draws {
-                match draw {
-                    Draw::Decal(decal) => collect(&decal.draw, into),
-                    Draw::Mesh(MeshDraw { mesh: Some(mesh), .. }) => {
-                        into.extend(mesh.warnings.iter().map(|line| format!("{}: {line}", mesh.name)));
-                    }
-                    _ => {}
-                }
-            }
-        }
-        let mut lines = Vec::new();
-        collect(&self.draw, &mut lines);
-        lines.sort();
-        lines.dedup();
-        lines
-    }
-}
-
-/// Loads the meshes of one draw list; `path` is the list's own path in the scene file.
-fn load_meshes_of(
-    draws: &mut [Draw],
-    path: &str,
-    folder: &Path,
-    scene_file: &Path,
-    known: &mut BTreeMap<PathBuf, Arc<Mesh>>,
-) -> Result<()> {
-    for (index, draw) in draws.iter_mut().enumerate() {
-        match draw {
-            Draw::Decal(decal) => {
-                let path = format!("{path}[{index}].decal.draw");
-                load_meshes_of(&mut decal.draw, &path, folder, scene_file, known)?;
-            }
-            Draw::Mesh(named) if named.mesh.is_none() => {
-                let file = folder.join(&named.file);
-                let mesh = match known.get(&file) {
-                    Some(mesh) => Arc::clone(mesh),
-                    None => Arc::new(crate::mesh::load(&file).map_err(|fault| Error::Field {
-                        file: scene_file.to_path_buf(),
-                        path: format!("{path}[{index}].mesh.file"),
-                        expected: "a readable .obj, .gltf or .glb file".to_owned(),
-                        found: fault.to_string(),
-                    })?),
-                };
-                known.insert(file, Arc::clone(&mesh));
-                named.mesh = Some(mesh);
-            }
-            _ => {}
-        }
-    }
-    Ok(())
 }

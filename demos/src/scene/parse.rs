@@ -11,7 +11,7 @@ use super::settings::{
     ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, HIDDEN_SURFACES, MOST_SUBPIXEL_POOL,
     SUBPIXEL_DEPTHS, SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS,
 };
-use super::{Camera, Orthographic, Perspective, Scene};
+use super::{Camera, DARK, Orthographic, Perspective, Scene};
 use crate::error::{Error, Result};
 use crate::limits::{MAX_FILE_BYTES, MAX_TARGET_PIXELS_PER_SIDE};
 
@@ -19,7 +19,7 @@ use crate::limits::{MAX_FILE_BYTES, MAX_TARGET_PIXELS_PER_SIDE};
 const MAX_ZA_BLOCK_SIDE: u32 = 16384;
 
 impl Scene {
-    /// Reads a scene from JSON. Meshes are named but not read; see [`Scene::load_meshes`]. `file` is for messages.
+    /// Reads a scene from JSON. Meshes and pictures are named but not read; see [`Scene::load_meshes`]. `file` is for messages.
     ///
     /// # Errors
     /// [`Error::Syntax`] with line and column, or [`Error::Field`] with the field's path, what was expected and
@@ -32,12 +32,7 @@ impl Scene {
         // A byte order mark is not JSON, but editors write it.
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
         let tree = Json::parse(bytes).map_err(|fault| syntax_error(file, &fault))?;
-        document(&tree).map_err(|fault| Error::Field {
-            file: file.to_path_buf(),
-            path: fault.path(),
-            expected: fault.expected,
-            found: fault.found,
-        })
+        document(&tree).map_err(|fault| fault.in_file(file))
     }
 }
 
@@ -50,7 +45,7 @@ fn syntax_error(file: &Path, fault: &serde_json::Error) -> Error {
 }
 
 fn document(tree: &Json) -> Read<Scene> {
-    let fields = tree.object(&["size", "background", "camera", "card", "lights", "materials", "draw"])?;
+    let fields = tree.object(&["size", "background", "camera", "card", "ambient", "lights", "materials", "draw"])?;
     let size = fields
         .required("size", |value| value.array("whole numbers", |side| side.whole(1..=MAX_TARGET_PIXELS_PER_SIDE)))?;
     let camera = fields.or("camera", Camera::Screen, camera)?;
@@ -62,6 +57,7 @@ fn document(tree: &Json) -> Read<Scene> {
         background: fields.or("background", [0, 0, 0, 255], Json::colour)?,
         camera,
         card: fields.optional("card", card)?.unwrap_or_default(),
+        ambient: fields.or("ambient", DARK, Json::colour)?,
         lights: fields.optional("lights", parse_effects::lights)?.unwrap_or_default(),
         materials,
         draw,

@@ -2,16 +2,21 @@
 
 use std::collections::BTreeMap;
 
-use super::effects::{Blend, FogFunction, Light, LightType, Material, Texture, TextureFilter};
-use super::json::{Fault, Json, Object, Read};
+use zga_abi::light::MOST_LIGHTS;
 
-/// Most lights of a scene.
-const MAX_LIGHTS: usize = 1024;
-/// Largest side of a texture, in texels.
-const MAX_TEXTURE_SIDE: u32 = 16384;
+use super::Colour;
+use super::effects::{
+    Blend, FogFunction, Light, LightType, Lighting, Material, TEXTURE_FORMATS, TEXTURE_FUNCTIONS, Texture,
+    TextureFilter, TextureFormat,
+};
+use super::json::{ANY, Fault, Json, Object, Read};
+use crate::limits::MAX_PICTURE_SIDE;
+
+/// Least and greatest bias of the level of detail, levels: 16 bits with 8 of them behind the point.
+const BIASES: std::ops::RangeInclusive<f32> = -128.0..=32767.0 / 256.0;
 
 pub(super) fn lights(value: &Json) -> Read<Vec<Light>> {
-    value.list("lights", 0..=MAX_LIGHTS, light)
+    value.list("lights", 0..=MOST_LIGHTS as usize, light)
 }
 
 fn light(value: &Json) -> Read<Light> {
@@ -64,6 +69,8 @@ pub(super) fn materials(value: &Json) -> Read<BTreeMap<String, Material>> {
 fn material(value: &Json) -> Read<Material> {
     let plain = Material::default();
     let fields = value.object(&[
+        "light",
+        "two_sided",
         "shininess",
         "specular",
         "emission",
@@ -73,9 +80,13 @@ fn material(value: &Json) -> Read<Material> {
         "fog_density",
         "fog_end",
         "fog_colour",
+        "depth_cue_scale",
+        "depth_cue_offset",
         "texture",
     ])?;
     Ok(Material {
+        light: fields.optional("light", |value| value.named(Lighting::NAMED))?,
+        two_sided: fields.or("two_sided", plain.two_sided, Json::flag)?,
         shininess: fields.or("shininess", plain.shininess, |value| value.number(0.0..=128.0))?,
         specular: fields.or("specular", plain.specular, Json::colour)?,
         emission: fields.or("emission", plain.emission, Json::colour)?,
@@ -85,25 +96,57 @@ fn material(value: &Json) -> Read<Material> {
         fog_density: fields.or("fog_density", plain.fog_density, |value| value.number(0.0..=f32::MAX))?,
         fog_end: fields.or("fog_end", plain.fog_end, Json::positive)?,
         fog_colour: fields.or("fog_colour", plain.fog_colour, Json::colour)?,
+        depth_cue_scale: fields.or("depth_cue_scale", plain.depth_cue_scale, |value| value.number(ANY))?,
+        depth_cue_offset: fields.or("depth_cue_offset", plain.depth_cue_offset, |value| value.number(ANY))?,
         texture: fields.optional("texture", texture)?,
     })
 }
 
 fn texture(value: &Json) -> Read<Texture> {
-    let fields = value.object(&["file", "filter", "offset", "size", "repeat", "mirror", "palette"])?;
+    let fields = value.object(&[
+        "file", "format", "function", "colour", "filter", "mip_map", "bias", "offset", "size", "repeat", "mirror",
+        "palette",
+    ])?;
+    let plain = Texture::named(fields.required("file", Json::file_name)?.to_owned());
+    let filter = fields.or("filter", plain.filter, |value| value.named(TextureFilter::NAMED))?;
+    let palette = fields.optional("palette", |value| value.list("colours", 1..=256, Json::colour))?;
+    let format = fields.optional("format", |value| value.named(&TEXTURE_FORMATS))?;
     Ok(Texture {
-        file: fields.required("file", Json::file_name)?.to_owned(),
-        filter: fields.or("filter", TextureFilter::Bilinear, |value| value.named(TextureFilter::NAMED))?,
-        offset: fields.or("offset", [0, 0], |value| texels(value, 0))?,
+        format: format_for(format, palette.as_deref()).map_err(|fault| fault.in_field("palette"))?,
+        function: fields.or("function", plain.function, |value| value.named(&TEXTURE_FUNCTIONS))?,
+        colour: fields.or("colour", plain.colour, Json::colour)?,
+        filter,
+        mip_map: fields.or("mip_map", filter == TextureFilter::Trilinear, Json::flag)?,
+        bias: fields.or("bias", plain.bias, |value| value.number(BIASES))?,
+        offset: fields.or("offset", plain.offset, |value| texels(value, 0))?,
         size: fields.optional("size", |value| texels(value, 1))?,
         repeat: flags(&fields, "repeat")?,
         mirror: flags(&fields, "mirror")?,
-        palette: fields.optional("palette", |value| value.list("colours", 1..=16, Json::colour))?,
+        palette,
+        ..plain
     })
 }
 
+/// The format that is asked for, else the smallest that has room for the palette.
+fn format_for(asked: Option<TextureFormat>, palette: Option<&[Colour]>) -> Read<TextureFormat> {
+    let count = palette.map_or(0, <[Colour]>::len);
+    let smallest = match count {
+        0 => TextureFormat::Rgba8888,
+        1..=16 => TextureFormat::Palette4,
+        _ => TextureFormat::Palette8,
+    };
+    let format = asked.unwrap_or(smallest);
+    match format.palette() as usize {
+        most if count <= most => Ok(format),
+        0 => Err(Fault::new(format!("no palette with the format \"{}\"", format.name()), format!("{count} colours"))),
+        most => {
+            Err(Fault::new(format!("at most {most} colours with the format \"{}\"", format.name()), format!("{count}")))
+        }
+    }
+}
+
 fn texels(value: &Json, least: u32) -> Read<[u32; 2]> {
-    value.array("whole numbers", |side| side.whole(least..=MAX_TEXTURE_SIDE))
+    value.array("whole numbers", |side| side.whole(least..=MAX_PICTURE_SIDE))
 }
 
 fn flags(fields: &Object<'_>, name: &str) -> Read<[bool; 2]> {

@@ -5,6 +5,7 @@ use std::path::Path;
 use proptest::prelude::*;
 
 use super::*;
+use crate::error::{Error, Result};
 
 /// The example of the format's description, with everything in it.
 const FULL: &str = r#"{ "size": [640, 480], "background": [16, 16, 32, 255],
@@ -14,12 +15,15 @@ const FULL: &str = r#"{ "size": [640, 480], "background": [16, 16, 32, 255],
            "za_block": [32, 1], "za_prediction": "block-length", "za_bypass": false, "tile_size": [8, 64],
            "systolic_variant": {"end_test": "zero", "ports": "merged", "colour": "value", "super_buffer": true},
            "depth_bits": 24, "depth_fraction_bits": 24},
+  "ambient": [30,31,32,255],
   "lights": [{"type": "spot", "position": [0,1,2], "direction": [0,-1,0], "attenuation_cut_off": 9.5,
               "spot_exponent": 4, "colour": [255,240,200,255], "ambient": [8,8,8,255]}],
   "materials": {"plain": {}, "glass": {"blend": "alpha", "shininess": 32, "specular": [255,255,255,255],
      "emission": [0,0,0,255], "punch_through": 128, "fog_function": "linear", "fog_density": 0.5, "fog_end": 9,
-     "fog_colour": [1,2,3,255], "texture": {"file": "brick.png", "filter": "trilinear", "offset": [1,2],
-     "size": [64,32], "repeat": [true,false], "mirror": [false,true], "palette": [[1,2,3,4]]}}},
+     "fog_colour": [1,2,3,255], "depth_cue_scale": 0.1, "depth_cue_offset": 1.5, "light": "pixel", "two_sided": true,
+     "texture": {"file": "brick.png", "filter": "trilinear", "offset": [1,2],
+     "size": [64,32], "repeat": [true,false], "mirror": [false,true], "palette": [[1,2,3,4]], "format": "palette8",
+     "function": "blend", "colour": [7,8,9,10], "bias": -1.5, "mip_map": false}}},
   "draw": [
     {"triangles": {"vertices": [[10,10,0.5],[90,12,0.5],[40,80,0.2]], "colours": [[255,0,0,255]], "material": "plain", "tag": 1}},
     {"lines": {"vertices": [[0,0,0.1],[99,40,0.1]], "colours": [[255,255,255,255]], "width": 2.5, "material": "glass"}},
@@ -29,12 +33,12 @@ const FULL: &str = r#"{ "size": [640, 480], "background": [16, 16, 32, 255],
     {"mesh": {"file": "spot.obj", "transform": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "material": "plain",
               "edges": true, "slope": 4}} ] }"#;
 
-fn parse(text: &str) -> Result<Scene> {
+pub(super) fn parse(text: &str) -> Result<Scene> {
     Scene::from_json(text.as_bytes(), Path::new("folder/scene.json"))
 }
 
 /// Path, expected and found of the fault.
-fn fault(text: &str) -> [String; 3] {
+pub(super) fn fault(text: &str) -> [String; 3] {
     match parse(text) {
         Err(Error::Field { path, expected, found, .. }) => [path, expected, found],
         other => panic!("a fault of a field, not {other:?}"),
@@ -68,7 +72,26 @@ fn parse_full_example_keeps_every_field() {
     let drawn: Vec<(f32, bool)> = scene.batches().iter().map(|batch| (batch.extent, batch.translucent)).collect();
     assert_eq!(drawn, [(1.0, false), (2.5, true), (8.0, false), (0.5, false), (1.0, false)]);
     assert_eq!(scene.lights[0].kind, LightType::Spot);
-    assert_eq!(scene.materials["glass"].texture.as_ref().expect("a texture").mirror, [false, true]);
+    assert_eq!(scene.ambient, [30, 31, 32, 255]);
+    let glass = &scene.materials["glass"];
+    assert_eq!((glass.light, glass.two_sided), (Some(Lighting::Pixel), true));
+    assert_eq!((glass.depth_cue_scale, glass.depth_cue_offset), (0.1, 1.5));
+    let texture = Texture {
+        file: "brick.png".to_owned(),
+        image: None,
+        format: TextureFormat::Palette8,
+        function: TextureFunction::Blend,
+        colour: [7, 8, 9, 10],
+        filter: TextureFilter::Trilinear,
+        mip_map: false,
+        bias: -1.5,
+        offset: [1, 2],
+        size: Some([64, 32]),
+        repeat: [true, false],
+        mirror: [false, true],
+        palette: Some(vec![[1, 2, 3, 4]]),
+    };
+    assert_eq!(glass.texture, Some(texture));
     assert_eq!(scene.draw.len(), 6);
     let Draw::Triangles(triangles) = &scene.draw[0] else { panic!("triangles first") };
     assert_eq!((triangles.tag, triangles.material.as_deref()), (Some(1), Some("plain")));
@@ -81,19 +104,6 @@ fn parse_full_example_keeps_every_field() {
 fn parse_smallest_scene_has_defaults() {
     let scene = parse(r#"{"size": [1, 16384], "draw": []}"#).expect("valid");
     assert_eq!(scene, Scene::new([1, 16384], [0, 0, 0, 255]));
-    assert!(scene.unsupported_effects(SubpixelGrid::Off).is_empty());
-}
-
-#[test]
-fn unsupported_effects_lists_lights_and_material_fields() {
-    let scene = parse(FULL).expect("valid");
-    let paths = scene.unsupported_effects(SubpixelGrid::Off);
-    assert_eq!(paths[0], "lights[0]");
-    let glass = |field: &str| paths.contains(&format!("materials.glass.{field}"));
-    assert!(["shininess", "specular", "punch_through", "fog_function", "texture"].map(glass) == [true; 5]);
-    assert!(glass("blend (translucency needs antialias for now)"));
-    assert!(scene.unsupported_effects(SubpixelGrid::Grid4x4).iter().all(|path| !path.contains("blend")));
-    assert!(!glass("emission") && paths.iter().all(|path| !path.contains("plain")));
 }
 
 #[test]

@@ -38,6 +38,7 @@ macro_rules! names_of {
         names
     }};
 }
+pub(super) use names_of;
 
 /// Paths that decide what is hidden, by name.
 pub const HIDDEN_SURFACES: [(&str, HiddenSurface); HiddenSurface::ALL.len()] = names_of!(HiddenSurface);

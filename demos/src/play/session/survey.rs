@@ -82,7 +82,7 @@ impl<B: Bus> Session<B> {
     /// # Errors
     /// [`Error::Driver`]; [`Error::Card`] where the card's thread is gone.
     pub fn subpixels(&mut self) -> Result<Option<SubpixelMap>> {
-        let Some(view) = self.view.filter(|_| self.settings.is_antialiased()) else {
+        let Some(view) = self.view.clone().filter(|_| self.settings.is_antialiased()) else {
             return Ok(None);
         };
         let fault = |name: &str| Error::driver(name.to_owned());
@@ -93,7 +93,7 @@ impl<B: Bus> Session<B> {
         // A scene that is at work still would be noted in place of this one.
         self.driver.finish().map_err(fault(&self.name))?;
         self.card.record_subpixels().map_err(gone(&self.name))?;
-        self.encode(view, None)?;
+        self.encode(&view, None)?;
         self.driver.finish().map_err(fault(&self.name))?;
         let map = self.card.take_subpixels().map_err(gone(&self.name))?;
         Ok(Some(map.unwrap_or_else(|| SubpixelMap::new(self.size[0], self.size[1]))))
@@ -105,11 +105,11 @@ impl<B: Bus> Session<B> {
     /// # Errors
     /// [`Error::Driver`].
     pub fn cost_of(&mut self, area: Rectangle) -> Result<Option<Counters>> {
-        let Some(view) = self.view else {
+        let Some(view) = self.view.clone() else {
             return Ok(None);
         };
         self.driver.clear_counters();
-        self.encode(view, Some(area))?;
+        self.encode(&view, Some(area))?;
         self.driver.finish().map_err(Error::driver(&self.name))?;
         Ok(Some(self.driver.counters()))
     }
