@@ -9,6 +9,7 @@
 
 pub mod bands;
 mod layers_path;
+mod shading_path;
 mod sorted;
 mod subpixel_path;
 mod workers;
@@ -30,10 +31,9 @@ use crate::memory::VideoMemory;
 use crate::memory::areas::whole;
 use crate::probe::account::{Account, Clocks};
 use crate::probe::pixel::PixelProbe;
-use crate::shading::fog::FogMixer;
-use crate::shading::light::{Lights, normal_matrix};
-use crate::shading::parameters::{ParameterTransform, Parameters};
-use crate::shading::pixel::{AlphaRule, PixelShading, Textured};
+use crate::shading::light::Lights;
+use crate::shading::parameters::Parameters;
+use crate::shading::pixel::AlphaRule;
 use crate::shading::plane::Interpolation;
 use crate::subpixel::map::SubpixelMap;
 use crate::subpixel::scene::{Scene, Taken, Taking};
@@ -42,6 +42,7 @@ use crate::texture::store::TextureStore;
 use bands::{Plane, Sight, Surfaces};
 use fearless_simd::Level;
 use rayon::prelude::*;
+use shading_path::{charge_light, drawn_to, parameter_transform};
 use sorted::Sorted;
 use std::ops::Range;
 use std::sync::Arc;
@@ -50,9 +51,6 @@ use zga_abi::format::{Fidelity, HiddenSurface, Topology};
 use zga_abi::{Counter, Effects};
 use zga_firmware::Stopped;
 use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Target};
-
-/// Most bytes of texels that a scene decodes for what is held back until it ends.
-const HELD_TEXELS: u64 = 1 << 30;
 
 /// Most host threads.
 const MAX_THREADS: usize = 256;
@@ -489,54 +487,6 @@ impl Pipeline {
         Ok(())
     }
 
-    /// What the interpolated colours of a draw go through; none where it calls for nothing of that kind.
-    #[expect(clippy::too_many_arguments, reason = "the unit's inputs; a struct would only be taken apart again")]
-    fn shading(
-        &mut self,
-        memory: &mut VideoMemory,
-        target: &Target,
-        geometry: &GeometryRegisters,
-        transform: &Transform,
-        state: &DrawState,
-        draw: &Draw<'_>,
-        account: &mut Account,
-    ) -> Result<Option<Arc<PixelShading>>, Stopped> {
-        let light = state.light.filter(|light| light.per_pixel);
-        if state.texture.is_none() && state.fog.is_none() && light.is_none() {
-            return Ok(None);
-        }
-        let mut texture = None;
-        if let Some(called) = &state.texture {
-            let (texels, decoded) = self.textures.texels(memory, called);
-            if decoded {
-                account.maximum(Counter::TextureDecodedBytes, self.textures.bytes());
-                self.held_texels += if self.waits(target, state) { texels.bytes() } else { 0 };
-            }
-            if self.held_texels > HELD_TEXELS {
-                return Err(Stopped::SceneFull);
-            }
-            texture = Some(Textured {
-                texture: texels,
-                function: called.function,
-                constant: called.colour,
-                filter: called.filter,
-                mip_map: called.mip_map && called.levels > 1,
-                punch_through: state.punch_through,
-            });
-        }
-        Ok(Some(Arc::new(PixelShading {
-            transform: parameter_transform(geometry, transform, state, draw),
-            light: light.map(|light| Lights::read(memory.words(), &light)),
-            texture,
-            fog: state.fog.as_ref().map(FogMixer::new),
-        })))
-    }
-
-    /// Whether primitives of a draw, or some of them, wait until the scene ends.
-    fn waits(&self, target: &Target, state: &DrawState) -> bool {
-        sorted::is_held(target) || target.subpixel.is_some() || state.effects.contains(Effects::BLEND)
-    }
-
     /// What decides visibility in a draw.
     fn path(&mut self, memory: &mut VideoMemory, target: &Target, setting: &Setting, account: &mut Account) -> Path {
         match target.hidden_surface {
@@ -682,42 +632,6 @@ impl Path {
         if let Path::Za(draw) = self {
             draw.pixels.shading.clone_from(&setting.shading);
         }
-    }
-}
-
-/// The frame was drawn to: textures that lie in it may have changed.
-fn drawn_to(memory: &mut VideoMemory, target: &Target) {
-    let words = |bytes: Range<u64>| (bytes.start / 4) as usize..bytes.end.div_ceil(4) as usize;
-    memory.changed(words(target.colour.bytes()));
-    if let Some(depth) = target.depth {
-        let bytes = u64::from(depth.pitch) * u64::from(target.colour.height);
-        memory.changed(words(u64::from(depth.base)..u64::from(depth.base) + bytes));
-    }
-}
-
-/// What the parameters of a draw's vertices go through.
-fn parameter_transform(
-    geometry: &GeometryRegisters,
-    transform: &Transform,
-    state: &DrawState,
-    draw: &Draw<'_>,
-) -> ParameterTransform {
-    let m = geometry.object_eye.map(f64::from);
-    ParameterTransform {
-        screen: transform.clone(),
-        eye: [0, 1, 2, 3].map(|row| [0, 1, 2, 3].map(|column| m[4 * row + column])),
-        normal: normal_matrix(&geometry.object_eye),
-        perspective: state.effects.contains(Effects::PERSPECTIVE),
-        topology: draw.topology,
-    }
-}
-
-/// Charges the light of so many vertices: 4 clocks for each light.
-fn charge_light(light: Option<&VertexLight>, vertices: u64, account: &mut Account) {
-    if let Some(light) = light {
-        let lights = light.lights.count() as u64 * vertices;
-        account.add(Counter::ShadingLights, lights);
-        account.charge(Counter::CyclesShading, Clocks(4 * lights));
     }
 }
 
