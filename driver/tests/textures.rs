@@ -110,7 +110,7 @@ fn upload_rows_of_small_texels_begin_words() {
     let cases = [
         (TextureFormat::Rgb565, vec![0x07E0_F800, 0x07E0_F800, 0x07E0_F800, 0x07E0_F800]),
         (TextureFormat::Rgba5551, vec![0x83E0_FC00, 0x83E0_FC00]),
-        (TextureFormat::Rgba4444, vec![0xF0F0_F00F, 0xF0F0_F00F]),
+        (TextureFormat::Rgba4444, vec![0xF0F0_FF00, 0xF0F0_FF00]),
         (TextureFormat::Palette8, vec![0x0100_0100, 0x0100_0100]),
         (TextureFormat::Palette4, vec![0x1010, 0x1010]),
     ];
