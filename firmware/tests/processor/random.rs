@@ -301,7 +301,7 @@ fn random_streams_reach_every_unit() {
     // The strategies above would prove little if nearly all of their packets were refused.
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let mut seen = std::collections::BTreeSet::new();
-    for _ in 0..600 {
+    for _ in 0..3000 {
         let steps = prop::collection::vec(step(), 30).new_tree(&mut runner).expect("steps").current();
         let mut bench = Bench::in_scene();
         for step in steps {
