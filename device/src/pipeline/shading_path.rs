@@ -49,14 +49,7 @@ impl Pipeline {
             if self.held_texels > HELD_TEXELS {
                 return Err(Stopped::SceneFull);
             }
-            texture = Some(Textured {
-                texture: texels,
-                function: called.function,
-                constant: called.colour,
-                filter: called.filter,
-                mip_map: called.mip_map && called.levels > 1,
-                punch_through: state.punch_through,
-            });
+            texture = Some(Textured { texture: texels, punch_through: state.punch_through });
         }
         Ok(Some(Arc::new(PixelShading {
             transform: parameter_transform(geometry, transform, state, draw),

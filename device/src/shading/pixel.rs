@@ -22,21 +22,13 @@ use crate::probe::account::{Account, Clocks};
 use crate::texture::{Texture, combine, combine_lanes};
 use std::sync::Arc;
 use zga_abi::Counter;
-use zga_abi::format::{TextureFilter, TextureFunction};
+use zga_abi::format::TextureFunction;
 
 /// A texture as a draw uses it.
 #[derive(Clone, Debug)]
 pub struct Textured {
     /// Texels.
     pub texture: Arc<Texture>,
-    /// How they are combined with the colour.
-    pub function: TextureFunction,
-    /// RGBA of the function `blend`.
-    pub constant: u32,
-    /// How they are read.
-    pub filter: TextureFilter,
-    /// Levels beyond the first are in use.
-    pub mip_map: bool,
     /// Texels with an alpha below this are holes.
     pub punch_through: Option<u8>,
 }
@@ -149,18 +141,9 @@ impl AlphaRule {
 }
 
 impl Textured {
-    /// Texels read for a look-up, and its clocks.
-    const fn cost(&self) -> (u64, u64) {
-        match self.filter {
-            TextureFilter::Nearest => (1, 1),
-            TextureFilter::Trilinear if self.mip_map => (8, 2),
-            TextureFilter::Bilinear | TextureFilter::Trilinear => (4, 1),
-        }
-    }
-
     fn alphas(&self) -> AlphaRule {
         let opaque = self.texture.is_opaque();
-        match self.function {
+        match self.texture.function() {
             TextureFunction::Replace => AlphaRule::Texels { opaque },
             _ if opaque => AlphaRule::Vertices,
             TextureFunction::Modulate | TextureFunction::Decal | TextureFunction::Blend => AlphaRule::Below,
@@ -178,7 +161,10 @@ impl PixelShading {
     /// What a pixel costs.
     #[must_use]
     pub fn cost(&self) -> ShadingCounts {
-        let (fetches, texture_clocks) = self.texture.as_ref().map_or((0, 0), Textured::cost);
+        let (fetches, texture_clocks) = self.texture.as_ref().map_or((0, 0), |textured| {
+            let texture = &textured.texture;
+            (texture.fetches(), texture.clocks())
+        });
         let lights = self.light.as_ref().map_or(0, |lights| lights.count() as u64);
         let (lit, fogged) = (u64::from(self.light.is_some()), u64::from(self.fog.is_some()));
         ShadingCounts {
@@ -198,7 +184,7 @@ impl PixelShading {
     pub fn looked_up(&self, fragments: u64, holes: u64) -> ShadingCounts {
         match &self.texture {
             Some(textured) if textured.punch_through.is_some() => {
-                let (fetches, texture_clocks) = textured.cost();
+                let (fetches, texture_clocks) = (textured.texture.fetches(), textured.texture.clocks());
                 let cost = ShadingCounts { texels: 1, fetches, texture_clocks, ..ShadingCounts::default() };
                 ShadingCounts { holes, ..cost.times(fragments) }
             }
@@ -240,7 +226,7 @@ impl ShadedPlane {
             return 0;
         };
         let [u, v] = [0, 1].map(|axis| coordinates[axis].at(place));
-        let lambda = if textured.mip_map {
+        let lambda = if textured.texture.has_levels() {
             textured.texture.level_of_detail(self.planes.gradients(coordinates, place, [u, v]))
         } else {
             0
@@ -269,7 +255,8 @@ impl ShadedPlane {
             colour = lights.lit(colour, [px, py, pz], [nx, ny, nz]);
         }
         if let Some(textured) = &shading.texture {
-            colour = combine(textured.function, colour, self.texel(textured, &place), textured.constant);
+            colour =
+                combine(textured.texture.function(), colour, self.texel(textured, &place), textured.texture.colour());
         }
         if let (Some(fog), Some(distance)) = (&shading.fog, &self.planes.distance) {
             colour = fog.mixed(colour, distance.at(&place) as f32);
@@ -284,7 +271,7 @@ impl ShadedPlane {
             return [0; LANES];
         };
         let (u, v) = (coordinates[0].at_lanes(places), coordinates[1].at_lanes(places));
-        let lambda = if textured.mip_map {
+        let lambda = if textured.texture.has_levels() {
             let gradients = self.planes.gradient_lanes(coordinates, places, [&u, &v]);
             textured.texture.level_of_detail_lanes(gradients.each_ref())
         } else {
@@ -325,7 +312,7 @@ impl ShadedPlane {
         }
         if let Some(textured) = &shading.texture {
             let texels = self.texel_lanes(textured, &places, wanted);
-            colours = combine_lanes(textured.function, &colours, &texels, textured.constant);
+            colours = combine_lanes(textured.texture.function(), &colours, &texels, textured.texture.colour());
         }
         if let (Some(fog), Some(distance)) = (&shading.fog, &self.planes.distance) {
             let mut distances = [0.0; LANES];

@@ -57,7 +57,7 @@ impl Texture {
     pub fn decode(memory: &[u32], texture: &checked::Texture) -> Texture {
         let wrap = [0, 1].map(|axis| Wrap::new(texture.repeat[axis], texture.mirror[axis]));
         let filter = match texture.filter {
-            TextureFilter::Trilinear if !texture.mip_map => TextureFilter::Bilinear,
+            TextureFilter::Trilinear if !texture.mip_map || texture.levels == 1 => TextureFilter::Bilinear,
             filter => filter,
         };
         Texture {
