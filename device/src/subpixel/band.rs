@@ -279,6 +279,9 @@ impl Work {
             self.numbers.push(number);
             let piece = Piece::new(input.setting, number, item, draw, input.top);
             self.cover::<S, C, R>(simd, input, piece, [from, to]);
+            if self.lists.is_full() {
+                return;
+            }
         }
         let layers = scene.draws.iter().any(|draw| draw.blend || draw.has_holes());
         if layers {

@@ -9,6 +9,9 @@
 use std::sync::LazyLock;
 use zga_abi::format::SubpixelResolve;
 
+/// The greatest level, and its light.
+pub const WHITE: f64 = 255.0;
+
 /// Light of each level.
 static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|level| light_of(level as f64)));
 /// Light of the middle between a level and the next.
@@ -80,6 +83,13 @@ mod tests {
                 let colour = level * 0x0101_0101;
                 assert_eq!(space.colour(space.of(colour)), colour, "{resolve:?}");
             }
+        }
+    }
+
+    #[test]
+    fn of_white_in_both_spaces_is_exactly_white() {
+        for resolve in [SubpixelResolve::Values, SubpixelResolve::Linear] {
+            assert_eq!(Space::new(resolve).of(u32::MAX), [WHITE; 4], "{resolve:?}");
         }
     }
 

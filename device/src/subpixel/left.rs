@@ -14,6 +14,9 @@ use super::piece::Piece;
 use super::scene::{Kind, Rule};
 use crate::hidden::z_buffer::specification::covers;
 
+/// So many fragments are put in order by insertion.
+const FEW: usize = 16;
+
 /// Drops the fragments that are hidden, and puts the others in order of submission. Whether the pixel in column `x` of
 /// line `line` is active.
 #[inline(always)]
@@ -30,6 +33,10 @@ pub(super) fn keep(work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, [x,
         }
     }
     let number = |fragment: &Fragment| work.numbers[fragment.piece as usize];
+    if list.len() > FEW {
+        list.sort_unstable_by_key(number);
+        return true;
+    }
     for end in 1..list.len() {
         let mut place = end;
         while place > 0 && number(&list[place - 1]) > number(&list[place]) {

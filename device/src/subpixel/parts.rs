@@ -2,7 +2,7 @@
 //!
 //! What each test, range and merge means is told in [`super::pixel`].
 
-use super::layers::{Class, Layer};
+use super::layers::{Class, Layer, LayerDepths, Run};
 use super::lists::Fragment;
 use super::piece::Piece;
 use super::pixel::{Pixel, samples};
@@ -56,6 +56,10 @@ pub struct Resolver {
     pub(super) mixed: Vec<[f64; 4]>,
     pub(super) classes: Vec<Class>,
     pub(super) order: Vec<(i32, usize)>,
+    /// The layers in that order, those of the same depths as one.
+    pub(super) runs: Vec<Run>,
+    /// Depths of the layers, while they are put in order sample by sample.
+    pub(super) sampled: Vec<LayerDepths>,
     /// Places of fragments that are seen and opaque, with what is compared when they are merged.
     seen: Vec<(u32, [i32; 2])>,
 }

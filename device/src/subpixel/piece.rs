@@ -46,6 +46,28 @@ enum Slope {
     Wild(Box<WidePlane>),
 }
 
+/// Depths at the samples of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampled {
+    /// Value at the centre.
+    value: i64,
+    /// Change for 1/16 pixel to the right and down.
+    gradient: [i64; 2],
+    /// Bits of a value below its point.
+    below: u32,
+    limits: [i32; 2],
+}
+
+impl Sampled {
+    /// Depth at a sample.
+    #[must_use]
+    #[inline(always)]
+    pub fn depth(&self, offset: Offset) -> i32 {
+        let there = self.value + i64::from(offset.x) * self.gradient[0] + i64::from(offset.y) * self.gradient[1];
+        (there >> self.below).clamp(i64::from(self.limits[0]), i64::from(self.limits[1])) as i32
+    }
+}
+
 /// An item set up for a band.
 #[derive(Clone, Debug)]
 pub struct Piece {
@@ -230,6 +252,30 @@ impl Piece {
             }
             Slope::Wild(wide) => wide.stored(x, y, [offset.x, offset.y]),
         }
+    }
+
+    /// Depths at the samples of pixel (`x`, `y`), where they can be said in 64 bits.
+    #[must_use]
+    #[inline(always)]
+    pub fn sampled(&self, setting: &Setting, x: i32, y: i32) -> Option<Sampled> {
+        let plane = &self.plane;
+        let level = self.is_level(setting);
+        if !level && !matches!(self.slope, Slope::Fine) {
+            return None;
+        }
+        let value = plane.value(x, y);
+        let limits = [plane.minimum, plane.maximum];
+        Some(match level {
+            true => Sampled { value, gradient: [0; 2], below: self.below, limits },
+            false => Sampled { value: 16 * value, gradient: [plane.dx, plane.dy], below: self.below + 4, limits },
+        })
+    }
+
+    /// Whether a piece has the depths of another wherever both are.
+    #[must_use]
+    #[inline(always)]
+    pub fn lies_in(&self, other: &Piece) -> bool {
+        self.plane == other.plane && self.slope == other.slope
     }
 
     /// Whether a piece has greater depths than another at all samples of pixel (`x`, `y`), by a step at least, and the

@@ -119,8 +119,7 @@ impl Work {
                     alpha if draw.hides(alpha) => {}
                     _ => {
                         reason = Reason::Layer;
-                        let mode = draw.mode;
-                        resolver.layers.push(Layer { mask: fragment.mask, fragment: number, colour, mode });
+                        resolver.layers.push(Layer::new(space, fragment.mask, number, colour, draw.mode));
                         continue;
                     }
                 }

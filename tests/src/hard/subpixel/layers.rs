@@ -18,25 +18,32 @@ enum Stack {
     Tied,
     /// No depth test: the later in front.
     Free,
+    /// Three to a plane, which others cross; the later in front.
+    Repeated,
     /// Half of them behind something opaque that comes in the middle.
     Hidden,
 }
 
-const STACKS: [Stack; 5] = [Stack::Whole, Stack::Cut, Stack::Tied, Stack::Free, Stack::Hidden];
+const STACKS: [Stack; 6] = [Stack::Whole, Stack::Cut, Stack::Tied, Stack::Free, Stack::Repeated, Stack::Hidden];
 
 fn layers(random: &mut Random, place: [i32; 2], count: u32, stack: Stack) -> Vec<Primitive> {
-    let layer = |random: &mut Random| {
+    let mut last = None;
+    let mut layer = |random: &mut Random, number: u32| {
         let (z, gradient) = match stack {
             Stack::Tied => (1 << 20, [0.0; 2]),
             _ => (random.int(1 << 18, 1 << 22), [random.between(-900.0, 900.0), random.between(-900.0, 900.0)]),
         };
         let cut = matches!(stack, Stack::Cut | Stack::Hidden);
-        let triangle = plane(random, place, z, gradient, cut);
+        let triangle = match last {
+            Some(last) if matches!(stack, Stack::Repeated) && number % 3 != 0 => last,
+            _ => plane(random, place, z, gradient, cut),
+        };
+        last = Some(triangle);
         let [r, g, b, alpha] = (random.bits() as u32).to_le_bytes();
         // Thin ones, so that the last of 300 still counts.
         coloured(triangle, [r, g, b, 1 + alpha % 12])
     };
-    (0..count).map(|_| layer(random)).collect()
+    (0..count).map(|number| layer(random, number)).collect()
 }
 
 /// Case 43.
@@ -77,8 +84,8 @@ pub fn many_layers() -> Row {
     Row {
         case: 43,
         name: "subpixel::many_layers",
-        construction: "33, 65, 81 and 300 translucent layers in one pixel: whole, cut by edges, of one depth, without a depth, about \
-                       something opaque; 3 grids, 2 ways to average, 3 orders (those that cross: exhaustive)",
+        construction: "33, 65, 81 and 300 translucent layers in one pixel: whole, cut by edges, of one depth, without a depth, of \
+                       repeated planes, about something opaque; 3 grids, 2 ways to average, 3 orders (those that cross: exhaustive)",
         property: "every layer counts: equal to exact composition, no pixel degraded",
         measured: format!("{tally}; {drawn} layers, {fragments} fragments stored, {degraded} pixels degraded"),
         passed: tally.wrong == 0 && fragments > 0,
