@@ -38,7 +38,10 @@ pub struct Work {
     /// Fragments as they are found.
     pub(super) lists: Lists,
     pub(super) spans: Vec<Span>,
-    /// For each chunk the piece that covers it, [`UNTOUCHED`] or [`OPEN`].
+    /// For the chunks below one another on all lines the piece that covers them, [`UNTOUCHED`], or [`OPEN`] where each has
+    /// its own owner.
+    pub(super) columns: Vec<u32>,
+    /// For each such chunk the piece that covers it, [`UNTOUCHED`] or [`OPEN`].
     pub(super) owners: Vec<u32>,
     /// A bit a pixel that may be active; rows of [`Input::words`] words.
     pub(super) active: Vec<u64>,
@@ -253,9 +256,11 @@ impl Work {
         }
         // Without a rule nothing hides anything.
         let ordered = input.setting.rule == Rule::InOrder;
-        self.owners.clear();
-        self.owners.resize(input.chunks() * input.lines, if ordered { OPEN } else { UNTOUCHED });
+        self.columns.clear();
+        self.columns.resize(input.chunks(), if ordered { OPEN } else { UNTOUCHED });
+        self.owners.resize(input.chunks() * input.lines, OPEN);
         if ordered {
+            self.owners.fill(OPEN);
             self.far[..pixels].fill(i32::MAX);
         }
     }

@@ -20,6 +20,9 @@ use crate::hidden::z_buffer::kernel::{LANE, LANES, Steps};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x16, u8x64, u32x16};
 
+/// Pixels of a row from which on it is worth asking whether a triangle covers chunks on all lines of a band.
+const WIDE: i32 = 3 * LANES as i32;
+
 /// Columns of samples where an empty row begins; beyond every target.
 const EMPTY: i32 = 1 << 24;
 
@@ -161,6 +164,15 @@ impl Work {
         let walks = Walks::new(simd, t);
         let drawn = self.pieces.last().is_some_and(|piece| piece.drawn);
         let mut centres = Centres { vertices, top: input.top, outline: None };
+        // Its inside, where that covers the band from top to bottom.
+        let mut taken = [0; 2];
+        if right - left >= WIDE && beyond - first == input.lines as i32 && input.setting.rule != Rule::InOrder {
+            let row = |row: i32| walks.spans(simd, t, row, [left * columns, right * columns]).map(|ends| ends[0]);
+            let (upper, lower) = (row(first * rows), row(beyond * rows - 1));
+            let (from, to) = (upper[0].max(lower[0]), upper[1].min(lower[1]));
+            taken = self.take_chunks(input, [(from + columns - 1) >> shift, to >> shift]);
+        }
+        let [taken_from, taken_to] = taken.map(|chunk| (chunk * LANES) as i32);
         let mut y = first;
         while y < beyond {
             let [froms, tos] = walks.spans(simd, t, y * rows, [left * columns, right * columns]);
@@ -185,7 +197,12 @@ impl Work {
                 }
                 let mut parts = [met, [0; 2]];
                 if whole[0] < whole[1] {
-                    self.span(simd, input, steps, y, whole);
+                    if taken_from < taken_to {
+                        self.span(simd, input, steps, y, [whole[0], taken_from]);
+                        self.span(simd, input, steps, y, [taken_to, whole[1]]);
+                    } else {
+                        self.span(simd, input, steps, y, whole);
+                    }
                     parts = [[met[0], whole[0]], [whole[1], met[1]]];
                 }
                 self.partly::<S, C, R>(simd, input, y, (froms, tos), centre, parts);

@@ -3,7 +3,8 @@
 //! A pixel has three depths: the farthest that can still be seen (what lies behind it is hidden), the least and the
 //! second least of the nearest ones of what covers it wholly (if the second is not hidden, two surfaces cross). They
 //! are only worked out in *open* chunks of 16 pixels, in which something is covered in part, or two spans meet. A chunk
-//! that one span covers keeps its piece's number: the inside of a surface costs a word a chunk.
+//! that one span covers keeps its piece's number, and so do the chunks below one another that one piece covers on all
+//! lines of the band: the inside of a surface costs a word for sixteen lines of sixteen pixels.
 //!
 //! Inputs from: [`super::cover`]. Outputs to: [`super::band`].
 
@@ -33,9 +34,55 @@ pub(super) const OPEN: u32 = u32::MAX - 1;
 const BEYOND: i32 = i32::MIN;
 
 impl Work {
+    /// Lets the last piece have the chunks in `columns`, which it covers on all lines of the band, if that decides what is
+    /// seen there: they are untouched, or what has them is nearer. Returns the chunks; none if it is not so.
+    #[inline(always)]
+    pub(super) fn take_chunks(&mut self, input: &Input<'_>, [from, to]: [i32; 2]) -> [usize; 2] {
+        let number = self.pieces.len() - 1;
+        let piece = &self.pieces[number];
+        let first = (from.max(0) as usize).div_ceil(LANES);
+        let width = input.setting.size[0] as usize;
+        let beyond = if to.max(0) as usize >= width { input.chunks() } else { to.max(0) as usize / LANES };
+        if first >= beyond || piece.layer || input.undecided(piece) {
+            return [0; 2];
+        }
+        let decided = |&owner: &u32| match owner {
+            UNTOUCHED => true,
+            OPEN => false,
+            owner => self.pieces[owner as usize].plane.maximum < piece.plane.minimum,
+        };
+        if !self.columns[first..beyond].iter().all(decided) {
+            return [0; 2];
+        }
+        for owner in &mut self.columns[first..beyond] {
+            if *owner == UNTOUCHED {
+                *owner = number as u32;
+            }
+        }
+        [first, beyond]
+    }
+
+    /// Gives the chunks below one another an owner each.
+    #[inline(always)]
+    fn split(&mut self, input: &Input<'_>, chunk: usize) {
+        let owner = std::mem::replace(&mut self.columns[chunk], OPEN);
+        if owner == OPEN {
+            return;
+        }
+        let from = chunk * LANES;
+        let to = (from + LANES).min(input.setting.size[0] as usize);
+        for line in 0..input.lines {
+            self.owners[line * input.chunks() + chunk] = owner;
+            if owner != UNTOUCHED {
+                self.spans.push(Span { piece: owner, line: line as u16, columns: [from as u16, to as u16] });
+            }
+        }
+    }
+
     /// Works the depths of a chunk out, if that is still to be done.
     #[inline(always)]
     pub(super) fn open<S: Simd>(&mut self, simd: S, input: &Input<'_>, line: usize, chunk: usize) {
+        self.split(input, chunk);
         let owner = &mut self.owners[line * input.chunks() + chunk];
         if *owner == OPEN {
             return;
@@ -76,8 +123,15 @@ impl Work {
     ) -> bool {
         let lane = u32x16::from_slice(simd, &LANE);
         let (left, right) = (left as usize, right as usize);
-        for line in (first - input.top) as usize..(beyond - input.top) as usize {
-            for chunk in left / LANES..(right - 1) / LANES + 1 {
+        let nearer = |owner: u32| self.pieces[owner as usize].plane.maximum < nearest;
+        for chunk in left / LANES..(right - 1) / LANES + 1 {
+            match self.columns[chunk] {
+                UNTOUCHED => return false,
+                OPEN => {}
+                owner if nearer(owner) => continue,
+                _ => return false,
+            }
+            for line in (first - input.top) as usize..(beyond - input.top) as usize {
                 match self.owners[line * input.chunks() + chunk] {
                     OPEN => {
                         let place = line * input.pitch() + chunk * LANES;
@@ -89,8 +143,8 @@ impl Work {
                         }
                     }
                     UNTOUCHED => return false,
-                    owner if self.pieces[owner as usize].plane.maximum >= nearest => return false,
-                    _ => {}
+                    owner if nearer(owner) => {}
+                    _ => return false,
                 }
             }
         }
@@ -117,6 +171,11 @@ impl Work {
             let x = chunk * LANES;
             let [value, value_far] = values;
             values = [value.wrapping_add(step), value_far.wrapping_add(step)];
+            match self.columns[chunk] {
+                OPEN => {}
+                owner if owner != UNTOUCHED && self.pieces[owner as usize].plane.maximum < minimum => continue,
+                _ => self.split(input, chunk),
+            }
             let owner = &mut self.owners[line * input.chunks() + chunk];
             if *owner != OPEN {
                 let all = from <= x && to >= (x + LANES).min(width);
@@ -156,8 +215,8 @@ impl Work {
     #[inline(always)]
     pub(super) fn cross<S: Simd>(&mut self, simd: S, input: &Input<'_>) {
         let words = input.words();
-        for line in 0..input.lines {
-            for chunk in 0..input.chunks() {
+        for chunk in (0..input.chunks()).filter(|&chunk| self.columns[chunk] == OPEN) {
+            for line in 0..input.lines {
                 if self.owners[line * input.chunks() + chunk] != OPEN {
                     continue;
                 }

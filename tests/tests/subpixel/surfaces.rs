@@ -58,24 +58,45 @@ fn body() -> impl Strategy<Value = Vec<Primitive>> {
     )
 }
 
-fn screen(subpixel: Subpixel, path: Path) -> Screen {
+/// Triangles over much of a wide target: some cover it from top to bottom over many pixels, as others cross them, lie
+/// before or behind; a few are translucent.
+fn sheets() -> impl Strategy<Value = Vec<Primitive>> {
+    let corner = (-8_000_i32..42_000, -8_000_i32..18_000, depth());
+    let flat = prop::option::weighted(0.5, depth());
+    let alpha = prop_oneof![3 => Just(255_u8), 1 => 40_u8..220];
+    let sheet = ([corner.clone(), corner.clone(), corner], flat, any::<[u8; 3]>(), alpha);
+    let sheet = sheet.prop_map(|(corners, flat, [r, g, b], alpha)| {
+        Primitive::Triangle(corners.map(|(x, y, z)| Vertex::at(x, y, flat.unwrap_or(z)).coloured([r, g, b, alpha])))
+    });
+    prop::collection::vec(sheet, 1..7)
+}
+
+/// More than a band of lines, and than four chunks of columns.
+const WIDE: [u32; 2] = [130, 35];
+
+fn screen(size: [u32; 2], subpixel: Subpixel, path: Path) -> Screen {
     let hidden = zga_tests::harness::Hidden::on(path);
-    Screen::new(SIZE[0], SIZE[1], &Options { pixels: Pixels::Argb8888, subpixel, hidden, ..Options::default() })
+    Screen::new(size[0], size[1], &Options { pixels: Pixels::Argb8888, subpixel, hidden, ..Options::default() })
 }
 
 /// Red, green, blue, alpha of each pixel on the card, and the oracle's.
-fn drawn(scene: &[Primitive], subpixel: Subpixel, path: Path) -> (Vec<[u8; 4]>, Vec<[Level; 4]>) {
-    let mut screen = screen(subpixel, path);
+fn drawn(
+    size: [u32; 2],
+    scene: &[Primitive],
+    state: &State,
+    (subpixel, path): (Subpixel, Path),
+) -> (Vec<[u8; 4]>, Vec<[Level; 4]>) {
+    let mut screen = screen(size, subpixel, path);
     let far = DepthFormat::default().greatest();
     screen.clear_planes(Some(u32::from_le_bytes(BACKGROUND)), Some(far), None);
-    screen.draw(scene, &State::masked());
+    screen.draw(scene, state);
     let rgba = |pixel: u32| {
         let [a, r, g, b] = pixel.to_be_bytes();
         [r, g, b, a]
     };
-    let mut oracle = target(SIZE, DepthFormat::default(), &subpixel);
-    oracle.clear([0, 0, SIZE[0], SIZE[1]], Some(BACKGROUND), Some(far));
-    oracle.draw(scene, &brush(&State::masked(), SIZE));
+    let mut oracle = target(size, DepthFormat::default(), &subpixel);
+    oracle.clear([0, 0, size[0], size[1]], Some(BACKGROUND), Some(far));
+    oracle.draw(scene, &brush(state, size));
     (screen.read().colour.into_iter().map(rgba).collect(), oracle.end())
 }
 
@@ -90,7 +111,7 @@ proptest! {
 
     #[test]
     fn draw_any_surface_without_folds_every_order_equals_the_oracle(scene in field(), (subpixel, path) in setting()) {
-        let (found, right) = drawn(&scene, subpixel, path);
+        let (found, right) = drawn(SIZE, &scene, &State::masked(), (subpixel, path));
 
         for (k, (pixel, levels)) in found.iter().zip(&right).enumerate() {
             prop_assert!(pixel.iter().zip(levels).all(|(c, level)| level.admits(*c)), "{}: {:?}, must be {:?}", k, pixel, levels);
@@ -99,12 +120,23 @@ proptest! {
 
     #[test]
     fn draw_any_closed_body_has_no_seam_and_equals_the_oracle(scene in body(), (subpixel, path) in setting()) {
-        let (found, right) = drawn(&scene, subpixel, path);
+        let (found, right) = drawn(SIZE, &scene, &State::masked(), (subpixel, path));
 
         let own = scene[0].vertices()[0].colour;
         for (k, (pixel, levels)) in found.iter().zip(&right).enumerate() {
             let between = (0..4).all(|c| (own[c].min(BACKGROUND[c])..=own[c].max(BACKGROUND[c])).contains(&pixel[c]));
             prop_assert!(between, "{}: {:?} is darker or lighter than {:?} and the background", k, pixel, own);
+            prop_assert!(pixel.iter().zip(levels).all(|(c, level)| level.admits(*c)), "{}: {:?}, must be {:?}", k, pixel, levels);
+        }
+    }
+
+    #[test]
+    fn draw_any_wide_sheets_equal_the_oracle(scene in sheets(), (subpixel, path) in setting()) {
+        let subpixel = Subpixel { depth: Order::Exhaustive, ..subpixel };
+        let state = State { blend: true, ..State::masked() };
+        let (found, right) = drawn(WIDE, &scene, &state, (subpixel, path));
+
+        for (k, (pixel, levels)) in found.iter().zip(&right).enumerate() {
             prop_assert!(pixel.iter().zip(levels).all(|(c, level)| level.admits(*c)), "{}: {:?}, must be {:?}", k, pixel, levels);
         }
     }
@@ -122,7 +154,7 @@ proptest! {
             [Primitive::Point(point), Primitive::Line([at(x + 900, y, z0), at(x + 3700, y + rise / 2, z1)])]
         }).collect();
         let state = State { line_width: width, point_size: width, ..State::masked() };
-        let mut screen = screen(subpixel, path);
+        let mut screen = screen(SIZE, subpixel, path);
         screen.draw(&scene, &state);
         let mut oracle = target(SIZE, DepthFormat::default(), &subpixel);
         oracle.draw(&scene, &brush(&state, SIZE));
@@ -139,7 +171,7 @@ fn draw_line_of_two_colours_is_flat_in_that_of_its_first_end() {
     let ends =
         [Vertex::at(300, 300, 5).coloured([255, 0, 0, 255]), Vertex::at(4000, 2200, 5).coloured([0, 255, 0, 255])];
     for grid in Grid::ALL {
-        let mut screen = screen(Subpixel::exhaustive(grid), Path::ZBuffer);
+        let mut screen = screen(SIZE, Subpixel::exhaustive(grid), Path::ZBuffer);
         screen.draw(&[Primitive::Line(ends)], &State { line_width: 0x300, ..State::masked() });
 
         let picture = screen.read().colour;

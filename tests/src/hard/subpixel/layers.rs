@@ -35,7 +35,7 @@ fn layers(random: &mut Random, place: [i32; 2], count: u32, stack: Stack) -> Vec
         };
         let cut = matches!(stack, Stack::Cut | Stack::Hidden);
         let triangle = match last {
-            Some(last) if matches!(stack, Stack::Repeated) && number % 3 != 0 => last,
+            Some(last) if matches!(stack, Stack::Repeated) && !number.is_multiple_of(3) => last,
             _ => plane(random, place, z, gradient, cut),
         };
         last = Some(triangle);
