@@ -50,7 +50,7 @@ impl Memory {
     }
 
     fn surfaces(&mut self) -> Surfaces<'_> {
-        Surfaces { colour: &mut self.colour, depth: &mut self.depth, words: &mut self.words }
+        Surfaces { colour: &mut self.colour, depth: &mut self.depth, words: &mut self.words, stencil: &mut [] }
     }
 
     /// The memory after all cleared blocks were brought to it.
