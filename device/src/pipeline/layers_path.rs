@@ -1,9 +1,8 @@
 //! The layer unit's way through the pipeline: what may be translucent waits while the path draws the rest, and is
 //! composed over it when the scene ends.
 //!
-//! In its midst that is done before a clear of depths alone, since these decide what is seen of the layers, and of stencil
-//! values alone where one of the layers asks for them: in the pixels
-//! cleared, which hold no layer from there on; elsewhere they go on waiting. A path that sorts before it draws first draws what it has, and
+//! In its midst that is done before a clear of depths or stencil values without colours, since these decide what is seen of
+//! the layers: in the pixels cleared, which hold no layer from there on; elsewhere they go on waiting. A path that sorts before it draws first draws what it has, and
 //! begins anew with that.
 
 use super::{Pipeline, za_path};
@@ -41,8 +40,7 @@ impl Pipeline {
             return;
         }
         if clear.colour.is_none() {
-            let decides = clear.depth.is_some() || (clear.stencil.is_some() && self.scene.asks_for_stencil());
-            if !decides || !self.scene.waits_in(&area) {
+            if (clear.depth.is_none() && clear.stencil.is_none()) || !self.scene.waits_in(&area) {
                 return;
             }
             let composed = self.compose_in_midst(memory, target, &area, account, stop);

@@ -311,12 +311,6 @@ impl Scene {
         self.items.iter().any(meets)
     }
 
-    /// Whether a layer waits that has a stencil test.
-    #[must_use]
-    pub fn asks_for_stencil(&self) -> bool {
-        self.items.iter().any(|item| self.is_layer(item) && self.draws[item.draw as usize].stencil.is_some())
-    }
-
     /// Takes back all layers that wait in `area`; `whole` if it is all there is.
     pub fn take_back(&mut self, area: &Rectangle, whole: bool) {
         if whole {

@@ -53,6 +53,7 @@ fn draw_inline_triangle_reaches_the_card_with_its_state() {
         light: None,
         fog: None,
         blend: BlendMode::Alpha,
+        stencil: None,
     };
     let draw = Drawn {
         topology: Topology::Triangles,
