@@ -23,7 +23,9 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::SeqCst;
 use zga_abi::bus::INTERRUPT_FENCE;
 use zga_abi::{Counter, Fault, Reg, Units};
-use zga_firmware::checked::{Clear, Combine, CombineSource, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words};
+use zga_firmware::checked::{
+    Clear, Combine, CombineSource, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words,
+};
 use zga_firmware::{Hardware, Processor, ProcessorState, Stopped};
 
 /// Units that [`Pipeline`] stands for.

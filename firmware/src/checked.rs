@@ -7,8 +7,8 @@ use core::ops::Range;
 use zga_abi::Effects;
 use zga_abi::format::{
     BitmapFormat, BlendMode, DepthFormat, DepthFunction, EndTest, Fidelity, FogFunction, HiddenSurface, PixelFormat,
-    RasterOperation, StencilOperation, StretchFilter, SubpixelDepth, SubpixelGrid, SubpixelResolve, TextureFilter, TextureFormat,
-    TextureFunction, TokenColour, TokenPorts, Topology, ZaPrediction,
+    RasterOperation, StencilOperation, StretchFilter, SubpixelDepth, SubpixelGrid, SubpixelResolve, TextureFilter,
+    TextureFormat, TextureFunction, TokenColour, TokenPorts, Topology, ZaPrediction,
 };
 
 /// A rectangle of pixels: `x`, `y` inclusive, `right`, `bottom` exclusive.

@@ -277,8 +277,7 @@ impl Input<'_> {
             let corner = [tile[0], rows[0]];
             let (depth, depth_pitch, format) = (depths, setting.depth_pitch, setting.format);
             let (stencil, stencil_pitch) = (values, setting.stencil_pitch);
-            let place =
-                Place { corner, area, depth, depth_pitch, format, draws: &scene.draws, stencil, stencil_pitch };
+            let place = Place { corner, area, depth, depth_pitch, format, draws: &scene.draws, stencil, stencil_pitch };
             let (words, pitch) = (&mut *colours, setting.colour_pitch);
             let mut frame = Frame { words, pitch, format: setting.pixel_format, x: tile[0] as usize };
             counts = counts.plus(dispatch!(level, simd => work.tile(simd, &place, &mut frame)));

@@ -117,7 +117,8 @@ impl Pipeline {
         };
         let worth = self.level.is_some() && weight(&self.scene, &setting) >= PIXELS;
         let pool = self.workers.pool_for(self.threads, worth);
-        let (counts, stopped) = self.layers.compose(&setting, &self.scene, self.level, pool, colours, depths, values, stop);
+        let (counts, stopped) =
+            self.layers.compose(&setting, &self.scene, self.level, pool, colours, depths, values, stop);
         charge(&counts, account);
         stopped
     }

@@ -9,8 +9,8 @@
 
 pub mod bands;
 mod layers_path;
-mod shadow_path;
 mod shading_path;
+mod shadow_path;
 mod sorted;
 mod subpixel_path;
 mod workers;
@@ -22,8 +22,8 @@ use crate::geometry::assembly::{Assembler, GeometryCounts, List, Widths};
 use crate::geometry::fetch::{Fetch, VertexLight};
 use crate::geometry::transform::Transform;
 use crate::hidden::held::HeldShading;
-use crate::hidden::systolic::Waves;
 use crate::hidden::stencil;
+use crate::hidden::systolic::Waves;
 use crate::hidden::z_buffer::band::{DrawShading, Setting, StencilSetting};
 use crate::hidden::z_buffer::tile::TILE;
 use crate::hidden::z_buffer::uniform::Uniform;

@@ -23,11 +23,8 @@ pub struct StencilSide {
 
 impl StencilSide {
     /// Nothing changes.
-    pub const KEEP: StencilSide = StencilSide {
-        fail: StencilOperation::Keep,
-        depth_fail: StencilOperation::Keep,
-        pass: StencilOperation::Keep,
-    };
+    pub const KEEP: StencilSide =
+        StencilSide { fail: StencilOperation::Keep, depth_fail: StencilOperation::Keep, pass: StencilOperation::Keep };
 
     /// The bits of this side in STENCIL_CONTROL, from `low` on.
     const fn bits(self, low: u32) -> u32 {
@@ -76,15 +73,13 @@ impl Stencil {
     /// shadow.
     #[must_use]
     pub const fn shadow_volume() -> Stencil {
-        let count = |depth_fail| StencilSide { depth_fail, ..StencilSide::KEEP };
-        let (front, back) = (StencilOperation::DecrementWrap, StencilOperation::IncrementWrap);
         Stencil {
             function: DepthFunction::Always,
             reference: 0,
             read_mask: 0xFF,
             write_mask: 0xFF,
-            front: count(front),
-            back: count(back),
+            front: StencilSide { depth_fail: StencilOperation::DecrementWrap, ..StencilSide::KEEP },
+            back: StencilSide { depth_fail: StencilOperation::IncrementWrap, ..StencilSide::KEEP },
             colours: false,
         }
     }
@@ -204,8 +199,8 @@ impl<B: Bus> Driver<B> {
     /// Wants the registers that END_SCENE samples.
     pub(crate) fn want_shadow(&mut self) {
         let Some(Shadow { function, reference, read_mask, intensity }) = self.state.effects.shadow else {
-            // What is not enabled need not be said twice.
-            self.registers.want(Reg::ShadowControl, &[0]);
+            // As the card resets it: disabled. A driver that never sets one sends nothing.
+            self.registers.want(Reg::ShadowControl, &[Reg::ShadowControl.info().reset_value(0)]);
             return;
         };
         let values = u32::from(reference) << 8 | u32::from(read_mask) << 16;

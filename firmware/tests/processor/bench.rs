@@ -47,6 +47,13 @@ impl Bench {
     }
 
     /// The same inside a scene.
+    pub fn in_scene_with_stencil_plane() -> Bench {
+        let mut bench = Bench::with_stencil_plane();
+        bench.good(0x02, &[]);
+        bench
+    }
+
+    /// With a target inside a scene.
     pub fn in_scene() -> Bench {
         let mut bench = Bench::with_target();
         bench.good(0x02, &[]);

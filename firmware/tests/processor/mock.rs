@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use zga_abi::format::Topology;
 use zga_abi::registers::REGISTERS;
 use zga_abi::{Reg, Units};
-use zga_firmware::checked::{Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words};
+use zga_firmware::checked::{
+    Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words,
+};
 use zga_firmware::{Hardware, Stopped};
 
 /// Bytes of video memory.

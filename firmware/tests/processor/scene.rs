@@ -2,14 +2,15 @@
 
 use crate::bench::{Bench, TRIANGLE};
 use crate::mock::{Call, MEMORY};
-use zga_abi::format::{DepthFunction, 
-    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid, SubpixelResolve,
-    TokenColour, TokenPorts, ZaPrediction,
+use zga_abi::format::{
+    DepthFormat, DepthFunction, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid,
+    SubpixelResolve, TokenColour, TokenPorts, ZaPrediction,
 };
 use zga_abi::{Fault, FaultCode};
 use zga_firmware::Stopped;
 use zga_firmware::checked::{
-    Clear, DepthSurface, Rectangle, Shadow, StencilSurface, StencilTest, SubpixelSetting, Surface, SystolicSetting, Target, ZaSetting,
+    Clear, DepthSurface, Rectangle, Shadow, StencilSurface, StencilTest, SubpixelSetting, Surface, SystolicSetting,
+    Target, ZaSetting,
 };
 
 const WHOLE: Rectangle = Rectangle { x: 0, y: 0, right: 64, bottom: 32 };
@@ -347,9 +348,7 @@ fn end_scene_with_the_shadow_bit_has_shadows_only_after_a_stencil_draw() {
         test: StencilTest { function: DepthFunction::Less, reference: 0x12, read_mask: 0x7F },
         intensity: 0x40,
     };
-    for (effects, enable, expected) in
-        [(0x800, 1, Some(shadow)), (0x800, 0, None), (0, 1, None)]
-    {
+    for (effects, enable, expected) in [(0x800, 1, Some(shadow)), (0x800, 0, None), (0, 1, None)] {
         let mut bench = Bench::with_stencil_plane();
         bench.good(0x02, &[]);
         bench.card.set(0x0280, effects);

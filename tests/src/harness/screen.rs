@@ -141,7 +141,8 @@ impl Screen {
         let depth = colour + options.frames.clamp(1, 2) * frame;
         let stencil = (depth + depth_pitch * height).next_multiple_of(GAP) + GAP;
         let stencil_pitch = if options.stencil { pitch(width) } else { 0 };
-        let vertices = if options.stencil { (stencil + stencil_pitch * height).next_multiple_of(GAP) + GAP } else { stencil };
+        let vertices =
+            if options.stencil { (stencil + stencil_pitch * height).next_multiple_of(GAP) + GAP } else { stencil };
         let scratch = (vertices + options.vertex_bytes).next_multiple_of(GAP);
         let textures = (scratch + 4 * width * height).next_multiple_of(GAP);
         let end = (textures + options.texture_bytes).next_multiple_of(GAP).max(1 << 20);
@@ -397,7 +398,8 @@ impl Screen {
             self.settle();
         }
         self.flush();
-        let Places { colour, colours, colour_pitch, depth, depth_pitch, stencil, stencil_pitch, vertices, .. } = self.places;
+        let Places { colour, colours, colour_pitch, depth, depth_pitch, stencil, stencil_pitch, vertices, .. } =
+            self.places;
         let first = colours[0] - GAP;
         let mut words = vec![0; ((vertices - first) / 4) as usize];
         self.bus.read_burst(packet::MEMORY + first, &mut words);

@@ -128,7 +128,10 @@ mod tests {
     fn draw_less_equals_the_picture_of_one_draw() {
         let scene = [quad(9, [1; 4]), quad(5, [2; 4]), quad(7, [3; 4])];
         let mut canvas = Canvas::new(5, 3, DepthFormat::default(), u32::from_le_bytes);
-        canvas.draw(&scene, &Test { function: Some(DepthFunction::Less), write: true, scissor: [0, 0, 9, 9], stencil: None });
+        canvas.draw(
+            &scene,
+            &Test { function: Some(DepthFunction::Less), write: true, scissor: [0, 0, 9, 9], stencil: None },
+        );
         let image = draw(5, 3, &scene, DepthFormat::default(), DepthFunction::Less);
         assert_eq!(canvas.depth, image.depth);
         assert_eq!(canvas.colour, [0x0202_0202; 15]);

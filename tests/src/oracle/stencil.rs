@@ -95,7 +95,8 @@ impl Stencil {
 pub fn shows_front(primitive: &Primitive) -> bool {
     match primitive {
         Primitive::Triangle(v) => {
-            let cross = |a: usize, b: usize| i128::from(v[a].x) * i128::from(v[b].y) - i128::from(v[b].x) * i128::from(v[a].y);
+            let cross =
+                |a: usize, b: usize| i128::from(v[a].x) * i128::from(v[b].y) - i128::from(v[b].x) * i128::from(v[a].y);
             cross(0, 1) + cross(1, 2) + cross(2, 0) < 0
         }
         Primitive::Line(_) | Primitive::Point(_) => true,

@@ -185,9 +185,8 @@ fn scene(frame: Frame, shared: bool) -> impl Strategy<Value = Scene> {
     let commands = (first, prop::collection::vec(command, 0..6)).prop_map(|(first, rest)| [first, rest].concat());
     let after = prop_oneof![3 => Just(vec![]), 1 => prop::collection::vec(between(frame), 1..4)];
     let shadow = prop::option::weighted(if frame.stencil { 0.5 } else { 0.0 }, shadow());
-    (prop_oneof![3 => Just(0), 1 => Just(1)], commands, shadow, after).prop_map(|(frame, commands, shadow, after)| {
-        Scene { frame, commands, shadow, after }
-    })
+    (prop_oneof![3 => Just(0), 1 => Just(1)], commands, shadow, after)
+        .prop_map(|(frame, commands, shadow, after)| Scene { frame, commands, shadow, after })
 }
 
 /// A script of up to `scenes` scenes on a target of up to `most` pixels a side.
