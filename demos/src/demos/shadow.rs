@@ -1,14 +1,14 @@
 //! Solids round a lamp, with the shadows that they cast on one another, on the floor and on the wall behind.
 //!
-//! The shadows are volumes: for each solid its faces that the lamp meets, the same faces far away on the other side, and
-//! a strip from each edge between a face in the light and one in the dark. They are drawn after the solids with colours
-//! off, and count in the stencil plane where what is seen is nearer than they are: back faces up, front faces down. A
-//! pixel that is not back at 0 lies in a shadow, wherever the eye stands, and the shadow bit darkens it.
+//! The shadows are volumes: for each solid its faces that the lamp does not meet, the same faces far away from the lamp,
+//! and a strip from each edge between a face in the dark and one in the light. They are drawn after the solids with
+//! colours off, and count in the stencil plane where what is seen is nearer than they are: back faces up, front faces
+//! down. A pixel that is not back at 0 lies in a shadow, wherever the eye stands, and the shadow bit darkens it.
 //!
-//! The faces in the light are the volume's own front: their depths are those of the solid to the last bit, so that they
-//! fail against it and it does not shade itself. For that both are made of the same positions in the world.
+//! A volume begins a hair behind the solid, so that a solid does not shade itself face by face: where the light ends on
+//! it is the lamp's business, which knows normals.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::{DMat4, DVec3};
 
@@ -21,11 +21,13 @@ use crate::scene::{
 
 /// How far volumes reach from what casts them: beyond the floor and the wall, and not to the far plane.
 const REACH: f64 = 40.0;
+/// How far behind a solid its volume begins.
+const HAIR: f64 = 0.012;
 /// Height of the floor, and distance of the wall behind.
 const FLOOR: f64 = -1.5;
 const WALL: f64 = -5.5;
 /// What is left of the light in shadow, of 255.
-const INTENSITY: u8 = 84;
+const INTENSITY: u8 = 92;
 /// Columns in a half circle round the middle.
 const COLUMNS: u32 = 7;
 
@@ -154,23 +156,25 @@ fn volume_of(mesh: &Mesh, lamp: DVec3) -> Primitives {
         let normal = (place(b) - place(a)).cross(place(c) - place(a));
         normal.dot(lamp - place(a)) > 0.0
     };
-    let lit: Vec<[u32; 3]> = faces.into_iter().filter(|face| is_lit(*face)).collect();
+    let dark: Vec<[u32; 3]> = faces.into_iter().filter(|face| !is_lit(*face)).collect();
     let edges = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
-    let in_light: std::collections::HashSet<[u32; 2]> = lit.iter().flat_map(|face| edges(*face)).collect();
+    let in_the_dark: HashSet<[u32; 2]> = dark.iter().flat_map(|face| edges(*face)).collect();
 
     let count = corners.len() as u32;
-    let far = corners.iter().map(|corner| {
-        let corner = wide(*corner);
-        narrow(corner + REACH * (corner - lamp).normalize_or(DVec3::NEG_Y))
-    });
-    let vertices: Vec<[f32; 3]> = corners.iter().copied().chain(far).collect();
+    let behind = |distance: f64| {
+        corners.iter().map(move |corner| {
+            let corner = wide(*corner);
+            narrow(corner + distance * (corner - lamp).normalize_or(DVec3::NEG_Y))
+        })
+    };
+    let vertices: Vec<[f32; 3]> = behind(HAIR).chain(behind(REACH)).collect();
     let mut indices = Vec::new();
-    for face in &lit {
+    for face in &dark {
         let [a, b, c] = *face;
-        indices.extend([a, b, c]);
-        indices.extend([a, c, b].map(|corner| count + corner));
-        for [from, to] in edges(*face).into_iter().filter(|[from, to]| !in_light.contains(&[*to, *from])) {
-            indices.extend([to, from, count + from, to, count + from, count + to]);
+        indices.extend([a, c, b]);
+        indices.extend([a, b, c].map(|corner| count + corner));
+        for [from, to] in edges(*face).into_iter().filter(|[from, to]| !in_the_dark.contains(&[*to, *from])) {
+            indices.extend([count + to, count + from, from, count + to, from, to]);
         }
     }
     let (indices, material) = (Some(indices), Some(VOLUME.to_owned()));
@@ -180,7 +184,6 @@ fn volume_of(mesh: &Mesh, lamp: DVec3) -> Primitives {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::HashMap;
 
     /// Directed edges of triangles, and how often each is there.
     fn edges(triangles: impl Iterator<Item = [[u32; 3]; 3]>) -> HashMap<[[u32; 3]; 2], i32> {
@@ -239,9 +242,13 @@ mod tests {
             };
             indices.as_chunks::<3>().0.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
         };
-        for (point, inside) in
-            [([0.0, -3.0, 0.0], 1.0), ([0.9, -1.5, 0.3], 1.0), ([3.0, -1.5, 0.0], 0.0), ([0.0, 1.0, 0.0], 0.0)]
-        {
+        for (point, inside) in [
+            ([0.0, -3.0, 0.0], 1.0),
+            ([0.9, -1.5, 0.3], 1.0),
+            ([3.0, -1.5, 0.0], 0.0),
+            ([0.0; 3], 0.0),
+            ([0.0, 1.0, 0.0], 0.0),
+        ] {
             assert!((round(DVec3::from(point)) - inside).abs() < 1e-6, "{point:?}: {}", round(DVec3::from(point)));
         }
     }

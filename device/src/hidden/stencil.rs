@@ -255,3 +255,98 @@ pub fn cycles(target: &Target) -> Counter {
         HiddenSurface::Tile => Counter::CyclesTile,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use zga_abi::format::{DepthFormat, DepthFunction, Fidelity, StencilOperation};
+    use zga_firmware::checked::{StencilOperations, StencilSurface, StencilTest, SystolicSetting, ZaSetting};
+
+    fn target(format: PixelFormat) -> Target {
+        Target {
+            colour: Surface { base: 0, pitch: 64, width: 5, height: 2, format },
+            depth: None,
+            depth_format: DepthFormat::default(),
+            subpixel_bits: 8,
+            hidden_surface: HiddenSurface::Tile,
+            fidelity: Fidelity::Functional,
+            za: ZaSetting::default(),
+            systolic: SystolicSetting::default(),
+            tile: [8, 8],
+            subpixel: None,
+            stencil: Some(StencilSurface { base: 128, pitch: 64 }),
+        }
+    }
+
+    #[test]
+    fn decide_each_outcome_has_its_operation_and_is_counted() {
+        use StencilOperation::{Increment, Invert, Zero};
+        let test = StencilTest { function: DepthFunction::LessEqual, reference: 4, read_mask: 0x0F };
+        let keep = StencilOperation::Keep;
+        let back = StencilOperations { fail: keep, depth_fail: keep, pass: keep };
+        let front = StencilOperations { fail: Zero, depth_fail: Increment, pass: Invert };
+        let rule = Stencil { test, write_mask: 0x3F, front, back, colour_off: false };
+        let (mut counts, stencilled) = (StencilCounts::default(), Stencilled { rule, front: true });
+        let mut outcome = |stencilled: &Stencilled, mut stored: u8, passes: bool| {
+            let drawn = stencilled.decide(&mut stored, &mut counts, || passes);
+            (drawn, stored)
+        };
+        assert_eq!(outcome(&stencilled, 0xF3, true), (false, 0xC0), "4 is not at most 3");
+        assert_eq!(outcome(&stencilled, 0xF4, false), (false, 0xF5));
+        assert_eq!(outcome(&stencilled, 0xF4, true), (true, 0xCB));
+        assert_eq!(outcome(&Stencilled { front: false, ..stencilled }, 0xF4, true), (true, 0xF4));
+        assert_eq!(counts, StencilCounts { tested: 4, failed: 1 });
+    }
+
+    #[test]
+    fn decide_asks_for_depth_only_what_passes_the_stencil_test() {
+        let keep = StencilOperations {
+            fail: StencilOperation::Keep,
+            depth_fail: StencilOperation::Keep,
+            pass: StencilOperation::Keep,
+        };
+        let test = StencilTest { function: DepthFunction::Never, reference: 0, read_mask: 0xFF };
+        let rule = Stencil { test, write_mask: 0xFF, front: keep, back: keep, colour_off: false };
+        let mut asked = false;
+        let drawn = Stencilled { rule, front: true }.decide(&mut 0, &mut StencilCounts::default(), || {
+            asked = true;
+            true
+        });
+        assert_eq!((drawn, asked), (false, false));
+    }
+
+    #[test]
+    fn fill_and_shadowed_find_runs_inside_the_target_only() {
+        let target = target(PixelFormat::Xrgb8888);
+        let mut memory = vec![u32::MAX; 64];
+        assert_eq!(fill(&mut memory, &target, &Rectangle { x: 0, y: 0, right: 5, bottom: 2 }, 0), Clocks(2));
+        let clocks = fill(&mut memory, &target, &Rectangle { x: 1, y: 1, right: 4, bottom: 2 }, 3);
+        assert_eq!(clocks, Clocks(1));
+        assert_eq!((memory[32], memory[33], memory[48], memory[49]), (0, 0xFFFF_FF00, 0x0303_0300, 0xFFFF_FF00));
+        assert_eq!([0, 1, 3, 4].map(|x| value_at(&memory, &target, x, 1)), [0, 3, 3, 0]);
+        let test = StencilTest { function: DepthFunction::NotEqual, reference: 0, read_mask: 0xFF };
+        assert_eq!(shadowed(&memory, &target, &Shadow { test, intensity: 0 }), [[1, 1, 4]]);
+        let test = StencilTest { function: DepthFunction::Equal, ..test };
+        assert_eq!(shadowed(&memory, &target, &Shadow { test, intensity: 0 }), [[0, 0, 5], [1, 0, 1], [1, 4, 5]]);
+    }
+
+    #[test]
+    fn darken_rounds_to_the_nearest_level_and_leaves_alpha() {
+        let mut surface = target(PixelFormat::Argb8888).colour;
+        let mut colours = vec![0x80FF_0203; 32];
+        darken(&mut colours, &surface, &[[0, 1, 2]], 128);
+        assert_eq!(colours[..3], [0x80FF_0203, 0x8080_0102, 0x80FF_0203]);
+        surface.format = PixelFormat::Rgb565;
+        let mut colours = vec![0xFFFF_FFFF; 32];
+        darken(&mut colours, &surface, &[[1, 0, 1]], 0);
+        assert_eq!((colours[15], colours[16]), (0xFFFF_FFFF, 0xFFFF_0000));
+    }
+
+    #[test]
+    fn charge_shadow_reads_the_plane_and_writes_what_is_darkened() {
+        let mut account = Account::default();
+        charge_shadow(&target(PixelFormat::Rgb565), &[[0, 0, 5], [1, 2, 4]], &mut account);
+        let found = [Counter::StencilShadowed, Counter::ColourWrites, Counter::CyclesTile].map(|c| account.get(c));
+        assert_eq!(found, [7, 7, 9]);
+    }
+}

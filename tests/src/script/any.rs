@@ -46,6 +46,14 @@ pub(super) fn rectangle([width, height]: [u32; 2]) -> impl Strategy<Value = [u32
     prop_oneof![3 => free, 2 => aligned]
 }
 
+/// Something in so many of ten cases; 0 is never.
+pub fn sometimes<T: Clone + std::fmt::Debug>(
+    tenths: u32,
+    something: impl Strategy<Value = T>,
+) -> impl Strategy<Value = Option<T>> {
+    prop_oneof![10 - tenths => Just(None), tenths => something.prop_map(Some)]
+}
+
 /// A stencil test: often one that passes, and values close together, so that the same ones meet again.
 pub(super) fn stencil() -> impl Strategy<Value = Stencil> {
     let function =
@@ -83,7 +91,7 @@ fn shadow() -> impl Strategy<Value = Shadow> {
 fn state(frame: Frame) -> impl Strategy<Value = State> {
     let function = prop_oneof![4 => Just(DepthFunction::Less), 5 => prop::sample::select(DepthFunction::ALL.to_vec())];
     let scissor = prop::option::weighted(0.25, rectangle(frame.size));
-    let stencil = prop::option::weighted(if frame.stencil { 0.8 } else { 0.0 }, stencil());
+    let stencil = sometimes(if frame.stencil { 8 } else { 0 }, stencil());
     (function, prop::bool::weighted(0.8), prop::bool::weighted(0.85), scissor, stencil).prop_map(
         move |(function, write, depth_test, scissor, stencil)| State {
             depth_test: depth_test && !frame.depthless,
@@ -122,7 +130,7 @@ fn clear(frame: Frame) -> impl Strategy<Value = Command> {
     let planes = prop_oneof![3 => Just((true, true)), 1 => Just((true, false)), 1 => Just((false, true))];
     let scissor = prop::option::weighted(0.5, rectangle(frame.size));
     // Of the stencil plane beside the others, alone, or not at all.
-    let value = prop::option::weighted(if frame.stencil { 0.5 } else { 0.0 }, 0_u8..4);
+    let value = sometimes(if frame.stencil { 5 } else { 0 }, 0_u8..4);
     let alone = prop::bool::weighted(0.4);
     let values = (prop::sample::select(colours.to_vec()), prop::sample::select(depths.to_vec()), value, alone);
     (planes, values, scissor).prop_map(move |((coloured, deep), (colour, depth, stencil, alone), scissor)| {
@@ -184,7 +192,7 @@ fn scene(frame: Frame, shared: bool) -> impl Strategy<Value = Scene> {
     let command = prop_oneof![6 => draw, 2 => clear(frame), 1 => Just(Command::Look), weight => in_scene(frame)];
     let commands = (first, prop::collection::vec(command, 0..6)).prop_map(|(first, rest)| [first, rest].concat());
     let after = prop_oneof![3 => Just(vec![]), 1 => prop::collection::vec(between(frame), 1..4)];
-    let shadow = prop::option::weighted(if frame.stencil { 0.5 } else { 0.0 }, shadow());
+    let shadow = sometimes(if frame.stencil { 5 } else { 0 }, shadow());
     (prop_oneof![3 => Just(0), 1 => Just(1)], commands, shadow, after)
         .prop_map(|(frame, commands, shadow, after)| Scene { frame, commands, shadow, after })
 }

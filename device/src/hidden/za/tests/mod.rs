@@ -75,6 +75,7 @@ fn za_draw(frame: &Frame, background: Background, state: &State) -> ZaDraw {
             format: frame.depth_format,
             interpolation: state.interpolation,
             shading: None,
+            stencil: None,
             cuts_segments: false,
             scissor: state.scissor,
             width: frame.grid.size[0],
