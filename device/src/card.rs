@@ -24,7 +24,7 @@ use std::sync::atomic::Ordering::SeqCst;
 use zga_abi::bus::INTERRUPT_FENCE;
 use zga_abi::{Counter, Fault, Reg, Units};
 use zga_firmware::checked::{
-    Clear, Combine, CombineSource, Convert, Copy, Draw, DrawState, Fill, Rows, Stretch, Target, Words,
+    Clear, Combine, CombineSource, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words,
 };
 use zga_firmware::{Hardware, Processor, ProcessorState, Stopped};
 
@@ -225,10 +225,10 @@ impl Hardware for Wiring<'_> {
         pipeline.begin_scene(&mut self.memory, target, account);
     }
 
-    fn end_scene(&mut self) -> Result<(), Stopped> {
+    fn end_scene(&mut self, shadow: Option<&Shadow>) -> Result<(), Stopped> {
         let stop = watch(self.backplane);
         let Blocks { pipeline, bitmap, scanout, account, powered, .. } = &mut *self.blocks;
-        let ended = pipeline.end_scene(&mut self.memory, account, &stop);
+        let ended = pipeline.end_scene(&mut self.memory, shadow, account, &stop);
         // Begin scene takes all power away. Memory goes back only now, from what the scene did not
         // call for: a unit that every scene needs keeps its memory from one to the next.
         if !powered.intersects(PIPELINE) {

@@ -165,6 +165,18 @@ pub enum DriverError {
         /// Number of the target.
         id: u32,
     },
+    /// The target has no stencil plane.
+    #[error("target {id} has no stencil plane")]
+    NoStencilPlane {
+        /// Number of the target.
+        id: u32,
+    },
+    /// A stencil test was set beside something that excludes it.
+    #[error("a stencil test does not go with {with}")]
+    StencilRefused {
+        /// What.
+        with: &'static str,
+    },
     /// The last scene on the target left no depths behind.
     #[error("target {id} has no depths of its last scene: the {path} path kept none, see set_keep_depth")]
     DepthNotKept {

@@ -2,7 +2,7 @@
 //!
 //! | module | holds |
 //! | --- | --- |
-//! | [`Driver`] | the card: opening, submission, fences, memory; scenes, state, hidden-surface paths, anti-aliasing, textures, lights, fog, blending, drawing, capture, probe; images and the bitmap unit |
+//! | [`Driver`] | the card: opening, submission, fences, memory; scenes, state, hidden-surface paths, anti-aliasing, textures, lights, fog, blending, stencil and shadows, drawing, capture, probe; images and the bitmap unit |
 //! | [`view`] | cameras and the decal transform |
 //! | [`memory`] | the video memory allocator |
 //! | [`bus`] | a bus model for tests, a bus that records |
@@ -75,7 +75,10 @@ pub use bitmap::{Drawable, Image, ImageError, Placement, Raster};
 pub use capture::{Frame, frame_hash, hash_text};
 pub use draw::{Curve, MeshBuffer, Vertex, Vertices};
 pub use driver::{Driver, DriverOptions};
-pub use effects::{Blend, Fog, FogCurve, Light, LightSource, Material, Texture, TextureOptions, TextureState};
+pub use effects::{
+    Blend, Fog, FogCurve, Light, LightSource, Material, Shadow, Stencil, StencilSide, Texture, TextureOptions,
+    TextureState,
+};
 pub use error::DriverError;
 pub use hidden::{SystolicVariant, ZaSettings};
 pub use info::{CardInfo, Counters};

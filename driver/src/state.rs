@@ -217,6 +217,7 @@ impl<B: Bus> Driver<B> {
             Ok(scene) => scene,
             Err(lost) => return Err(met.err().unwrap_or(lost)),
         };
+        self.check_stencil(&scene)?;
         let (width, height, depth) = (scene.width, scene.height, scene.depth);
         self.compose_matrices(width, height, depth)?;
         let mut effects = self.want_masks(&scene) | self.want_effects(flags, gouraud);

@@ -2,7 +2,7 @@
 
 use zga_abi::bus::Bus;
 use zga_abi::format::{DepthFormat, HiddenSurface, PixelFormat};
-use zga_abi::packet::{CLEAR_COLOUR, CLEAR_DEPTH, Opcode, header};
+use zga_abi::packet::{CLEAR_COLOUR, CLEAR_DEPTH, CLEAR_STENCIL, CLEAR_STENCIL_SHIFT, Opcode, header};
 use zga_abi::registers::Reg;
 
 use crate::hidden::ZaAreas;
@@ -25,14 +25,16 @@ pub struct TargetOptions {
     pub depth: Option<DepthFormat>,
     /// Two frame buffers: one is drawn to while the other is shown.
     pub double_buffered: bool,
+    /// A stencil plane.
+    pub stencil: bool,
 }
 
 impl TargetOptions {
     /// XRGB8888 with a Z buffer of 24 bits and one frame buffer.
     #[must_use]
     pub fn new(width: u32, height: u32) -> TargetOptions {
-        let depth = Some(DepthFormat::default());
-        TargetOptions { width, height, pixel_format: PixelFormat::Xrgb8888, depth, double_buffered: false }
+        let (pixel_format, depth) = (PixelFormat::Xrgb8888, Some(DepthFormat::default()));
+        TargetOptions { width, height, pixel_format, depth, double_buffered: false, stencil: false }
     }
 }
 
@@ -69,6 +71,8 @@ pub(crate) struct TargetState {
     pitch: u32,
     pub depth: Option<Allocation>,
     pub depth_pitch: u32,
+    pub stencil: Option<Allocation>,
+    pub stencil_pitch: u32,
     pub za: ZaAreas,
     /// The path of the last scene, if that scene left no depths behind.
     pub depth_lost: Option<HiddenSurface>,
@@ -96,6 +100,8 @@ pub(crate) struct Scene {
     pub path: HiddenSurface,
     /// Its pixels have samples.
     pub grid: bool,
+    /// It has a stencil plane.
+    pub stencil: bool,
     /// It has a Z buffer, or all depth was cleared in it.
     pub depth_known: bool,
     /// Its begin was refused: nothing can be drawn until it ends.
@@ -129,7 +135,13 @@ impl<B: Bus> Driver<B> {
             }
         }
         let (pitch, depth_pitch) = (pitch_of(width * options.pixel_format.bytes()), pitch_of(4 * width));
-        let surfaces = [Some(pitch), options.double_buffered.then_some(pitch), options.depth.map(|_| depth_pitch)];
+        let stencil_pitch = if options.stencil { pitch_of(width) } else { 0 };
+        let surfaces = [
+            Some(pitch),
+            options.double_buffered.then_some(pitch),
+            options.depth.map(|_| depth_pitch),
+            options.stencil.then_some(stencil_pitch),
+        ];
         let mut taken = Vec::new();
         for pitch in surfaces.into_iter().flatten() {
             match self.allocate(u64::from(pitch) * u64::from(height), Alignment::Line) {
@@ -142,12 +154,24 @@ impl<B: Bus> Driver<B> {
                 }
             }
         }
+        let stencil = if options.stencil { taken.pop() } else { None };
         let depth = options.depth.and_then(|_| taken.pop());
         let depth_pitch = if depth.is_some() { depth_pitch } else { 0 };
         let id = self.next_target;
         self.next_target = id.wrapping_add(1);
         let (za, depth_lost) = (ZaAreas::default(), None);
-        let state = TargetState { options, buffers: taken, back: 0, pitch, depth, depth_pitch, za, depth_lost };
+        let state = TargetState {
+            options,
+            buffers: taken,
+            back: 0,
+            pitch,
+            depth,
+            depth_pitch,
+            stencil,
+            stencil_pitch,
+            za,
+            depth_lost,
+        };
         self.targets.insert(id, state);
         Ok(Target { id, width, height })
     }
@@ -171,7 +195,7 @@ impl<B: Bus> Driver<B> {
         }
         if let Some(state) = self.targets.remove(&target.id) {
             self.free_za_words(state.za)?;
-            for surface in state.buffers.into_iter().chain(state.depth) {
+            for surface in state.buffers.into_iter().chain(state.depth).chain(state.stencil) {
                 self.free(surface)?;
             }
         }
@@ -206,14 +230,19 @@ impl<B: Bus> Driver<B> {
             }
             self.registers.want(Reg::DepthFormat, &[format.code()]);
         }
+        let stencil = state.stencil.is_some();
+        self.registers.want(Reg::StencilPitch, &[state.stencil_pitch]);
+        if let Some(plane) = &state.stencil {
+            self.registers.want(Reg::StencilBase, &[plane.address()]);
+        }
         self.registers.want(Reg::SubpixelBits, &[self.state.subpixel_bits]);
         let grid = self.want_antialias();
         if self.state.composed_for != (width, height) {
             self.state.composed_for = (width, height);
             self.state.matrices_changed();
         }
-        self.scene =
-            Some(Scene { id: target.id, width, height, depth, path, grid, depth_known: uses_z_buffer, lost: false });
+        let (id, depth_known) = (target.id, uses_z_buffer);
+        self.scene = Some(Scene { id, width, height, depth, path, grid, stencil, depth_known, lost: false });
         let registers = self.send_registers();
         registers.and(self.encode(Opcode::BeginScene, &[]))
     }
@@ -224,6 +253,20 @@ impl<B: Bus> Driver<B> {
     /// [`DriverError::OutsideScene`]; [`DriverError::NoDepthBuffer`] for a depth where there is none;
     /// [`DriverError::BadOption`] for a depth outside 0..=1; or as [`Driver::flush`].
     pub fn clear(&mut self, colour: Option<[u8; 4]>, depth: Option<f32>) -> Result<(), DriverError> {
+        self.clear_with_stencil(colour, depth, None)
+    }
+
+    /// Clears frame buffer, Z buffer and stencil plane inside the scissor, as [`Driver::clear`]; `None` leaves as is. No
+    /// mask counts.
+    ///
+    /// # Errors
+    /// As [`Driver::clear`], and [`DriverError::NoStencilPlane`] for a stencil value where there is no plane.
+    pub fn clear_with_stencil(
+        &mut self,
+        colour: Option<[u8; 4]>,
+        depth: Option<f32>,
+        stencil: Option<u8>,
+    ) -> Result<(), DriverError> {
         let scene = self.open_scene("clear")?;
         let mut planes = if colour.is_some() { CLEAR_COLOUR } else { 0 };
         let mut value = 0;
@@ -235,6 +278,12 @@ impl<B: Bus> Driver<B> {
             }
             planes |= CLEAR_DEPTH;
             value = (f64::from(depth) * f64::from(format.maximum()) + 0.5).floor() as u32;
+        }
+        if let Some(stencil) = stencil {
+            if !scene.stencil {
+                return Err(DriverError::NoStencilPlane { id: scene.id });
+            }
+            planes |= CLEAR_STENCIL | u32::from(stencil) << CLEAR_STENCIL_SHIFT;
         }
         if planes == 0 {
             return Ok(());
@@ -255,7 +304,17 @@ impl<B: Bus> Driver<B> {
     pub fn end_scene(&mut self) -> Result<(), DriverError> {
         self.adopt_recovered();
         let scene = self.scene.take().ok_or(DriverError::OutsideScene { call: "end_scene" })?;
-        let ended = if scene.lost { Ok(()) } else { self.encode(Opcode::EndScene, &[]) };
+        let ended = if scene.lost {
+            Ok(())
+        } else {
+            let registers = if scene.stencil {
+                self.want_shadow();
+                self.send_registers()
+            } else {
+                Ok(())
+            };
+            registers.and(self.encode(Opcode::EndScene, &[]))
+        };
         let freed = self.free_scene_memory();
         ended.and(freed)
     }

@@ -7,8 +7,8 @@ use core::ops::Range;
 use zga_abi::Effects;
 use zga_abi::format::{
     BitmapFormat, BlendMode, DepthFormat, DepthFunction, EndTest, Fidelity, FogFunction, HiddenSurface, PixelFormat,
-    RasterOperation, StretchFilter, SubpixelDepth, SubpixelGrid, SubpixelResolve, TextureFilter, TextureFormat,
-    TextureFunction, TokenColour, TokenPorts, Topology, ZaPrediction,
+    RasterOperation, StencilOperation, StretchFilter, SubpixelDepth, SubpixelGrid, SubpixelResolve, TextureFilter,
+    TextureFormat, TextureFunction, TokenColour, TokenPorts, Topology, ZaPrediction,
 };
 
 /// A rectangle of pixels: `x`, `y` inclusive, `right`, `bottom` exclusive.
@@ -68,6 +68,19 @@ pub struct DepthSurface {
     pub pitch: u32,
 }
 
+/// Stencil values in video memory, one byte a pixel; the size is that of the target.
+///
+/// # Invariants
+/// `base` and `pitch` are multiples of 64; all `height` rows of `pitch` bytes lie in video memory
+/// and apart from those of frame buffer and Z buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StencilSurface {
+    /// First byte.
+    pub base: u32,
+    /// Bytes from a row to the next, at least the width.
+    pub pitch: u32,
+}
+
 /// What a scene draws to, and how; fixed from begin scene to end scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Target {
@@ -91,6 +104,9 @@ pub struct Target {
     pub tile: [u32; 2],
     /// Sub-pixel mask unit; none where SUBPIXEL_GRID is off. Only with one do draws call for ANTI_ALIAS.
     pub subpixel: Option<SubpixelSetting>,
+    /// Stencil plane, if there is one (STENCIL_PITCH is not 0). Only with one, and without a grid, do draws call for
+    /// STENCIL.
+    pub stencil: Option<StencilSurface>,
 }
 
 impl Target {
@@ -202,6 +218,108 @@ pub struct DrawState {
     pub fog: Option<Fog>,
     /// How translucent fragments are combined, where BLEND is called.
     pub blend: BlendMode,
+    /// Where STENCIL is called: the stencil test. With BLEND it changes no value and draws colours.
+    pub stencil: Option<Stencil>,
+}
+
+/// A stencil test: the reference OP the stored value, both masked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StencilTest {
+    /// OP.
+    pub function: DepthFunction,
+    /// Reference.
+    pub reference: u8,
+    /// Bits that are compared.
+    pub read_mask: u8,
+}
+
+/// A stencil test, and what becomes of stencil values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stencil {
+    /// The test.
+    pub test: StencilTest,
+    /// Bits that operations may change.
+    pub write_mask: u8,
+    /// Operations of the fragments of triangles whose vertices run counter-clockwise on the screen, of lines and points.
+    pub front: StencilOperations,
+    /// Operations of the fragments of other triangles.
+    pub back: StencilOperations,
+    /// Pixels that pass keep their colour.
+    pub colour_off: bool,
+}
+
+/// What becomes of a pixel's stencil value when a fragment comes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StencilOperations {
+    /// It fails the stencil test.
+    pub fail: StencilOperation,
+    /// It passes the stencil test and fails the depth test.
+    pub depth_fail: StencilOperation,
+    /// It passes both.
+    pub pass: StencilOperation,
+}
+
+impl StencilTest {
+    /// Whether a stored value passes.
+    #[must_use]
+    #[inline(always)]
+    pub const fn passes(&self, stored: u8) -> bool {
+        let (reference, stored) = (self.reference & self.read_mask, stored & self.read_mask);
+        match self.function {
+            DepthFunction::Never => false,
+            DepthFunction::Less => reference < stored,
+            DepthFunction::Equal => reference == stored,
+            DepthFunction::LessEqual => reference <= stored,
+            DepthFunction::Greater => reference > stored,
+            DepthFunction::NotEqual => reference != stored,
+            DepthFunction::GreaterEqual => reference >= stored,
+            DepthFunction::Always => true,
+        }
+    }
+}
+
+impl Stencil {
+    /// What becomes of a stored value by an operation.
+    #[must_use]
+    #[inline(always)]
+    pub const fn apply(&self, operation: StencilOperation, stored: u8) -> u8 {
+        let result = match operation {
+            StencilOperation::Keep => stored,
+            StencilOperation::Zero => 0,
+            StencilOperation::Replace => self.test.reference,
+            StencilOperation::Increment => stored.saturating_add(1),
+            StencilOperation::Decrement => stored.saturating_sub(1),
+            StencilOperation::Invert => !stored,
+            StencilOperation::IncrementWrap => stored.wrapping_add(1),
+            StencilOperation::DecrementWrap => stored.wrapping_sub(1),
+        };
+        (stored & !self.write_mask) | (result & self.write_mask)
+    }
+
+    /// Whether an operation can change a value.
+    #[must_use]
+    pub fn changes_values(&self) -> bool {
+        let all = |face: StencilOperations| [face.fail, face.depth_fail, face.pass];
+        let mut operations = all(self.front).into_iter().chain(all(self.back));
+        self.write_mask != 0 && operations.any(|operation| operation != StencilOperation::Keep)
+    }
+
+    /// Whether a fragment that fails a test can change a value.
+    #[must_use]
+    pub fn marks_failures(&self) -> bool {
+        let failing = |face: StencilOperations| [face.fail, face.depth_fail];
+        let mut operations = failing(self.front).into_iter().chain(failing(self.back));
+        self.write_mask != 0 && operations.any(|operation| operation != StencilOperation::Keep)
+    }
+}
+
+/// The shadow bit: pixels that are darkened when the opaque picture of a scene is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shadow {
+    /// Pixels whose stencil value passes are in shadow.
+    pub test: StencilTest,
+    /// What is left of each channel, of 255.
+    pub intensity: u8,
 }
 
 /// A texture in video memory, and how it is read.
@@ -359,6 +477,8 @@ pub struct Clear {
     pub colour: Option<u32>,
     /// Depth to clear to, at most the format's maximum; only where the target has a Z buffer or the path needs none.
     pub depth: Option<u32>,
+    /// Value for the stencil plane; only where the target has one.
+    pub stencil: Option<u8>,
     /// Pixels to clear: the scissor cut to the target; can be empty.
     pub area: Rectangle,
 }

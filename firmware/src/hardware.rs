@@ -1,6 +1,6 @@
 //! The card's units as the firmware sees them.
 
-use crate::checked::{Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Stretch, Target, Words};
+use crate::checked::{Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words};
 use zga_abi::{Reg, Units};
 
 /// Why a unit stopped before its work was done.
@@ -30,11 +30,12 @@ pub trait Hardware {
     /// Begins a scene.
     fn begin_scene(&mut self, target: &Target);
 
-    /// Ends the scene: everything drawn is in memory when this returns.
+    /// Ends the scene: everything drawn is in memory when this returns. With a `shadow`, which comes only where the
+    /// target has a stencil plane, pixels in shadow are darkened after the opaque picture and before layers.
     ///
     /// # Errors
     /// [`Stopped`] if it took too long or the host resets the card.
-    fn end_scene(&mut self) -> Result<(), Stopped>;
+    fn end_scene(&mut self, shadow: Option<&Shadow>) -> Result<(), Stopped>;
 
     /// Clears planes of the target.
     fn clear(&mut self, clear: &Clear);

@@ -14,7 +14,7 @@ use zga_tests::harness::hidden::SUPER_BUFFER;
 use zga_tests::harness::scenes::Piece;
 use zga_tests::harness::{Hidden, Path, Pixels, Prediction, State, Subpixel};
 use zga_tests::oracle::{DepthFormat, Vertex};
-use zga_tests::script::any::script;
+use zga_tests::script::any::{script, stencil_script};
 use zga_tests::script::{Command, Outcome, Scene, Script, Way, judge, run};
 
 fn long() -> bool {
@@ -192,19 +192,42 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(cases(500))]
+
+    #[test]
+    fn run_any_script_with_a_stencil_plane_every_path_gives_one_picture_and_one_plane(
+        script in stencil_script(65, 3), settings in settings(),
+    ) {
+        every_path(&script, &settings)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(40))]
+
+    #[test]
+    fn run_any_larger_script_with_a_stencil_plane_every_path_gives_one_picture_and_one_plane(
+        script in stencil_script(200, 2), settings in settings(),
+    ) {
+        every_path(&script, &settings)?;
+    }
+}
+
 #[test]
 fn clear_after_a_draw_that_meets_nothing_is_no_background_in_either_fidelity() {
     let corner = |x: i32| Vertex { x, y: 0, z: 0, colour: [0; 4] };
-    let clear = Command::Clear { colour: Some(1), depth: Some(5), scissor: None };
+    let clear = Command::Clear { colour: Some(1), depth: Some(5), stencil: None, scissor: None };
     let outside = Command::Draw { pieces: vec![Piece::Point(corner(-999))], state: State::default() };
     let script = Script {
         size: [17, 9],
         format: DepthFormat { bits: 24, fraction: 24 },
         pixels: Pixels::Xrgb8888,
         depthless: false,
+        stencil: false,
         gouraud: false,
         subpixel: Subpixel::default(),
-        scenes: vec![Scene { frame: 0, commands: vec![clear.clone(), outside, clear], after: vec![] }],
+        scenes: vec![Scene { frame: 0, commands: vec![clear.clone(), outside, clear], shadow: None, after: vec![] }],
     };
     for hidden in [Hidden::systolic(0), Hidden::tile([8, 8])] {
         let events = [hidden, hidden.clocked()].map(|hidden| run(&script, &Way::plain(hidden)).events);

@@ -22,6 +22,7 @@ mod paths;
 mod pictures;
 mod points;
 mod raster;
+mod shadow;
 mod shapes;
 mod solids;
 mod spokes;
@@ -215,6 +216,12 @@ pub const DEMOS: &[Demo] = &[
         description: "crossing panes that add, cover and multiply, and a glass teapot",
         frames: TURN,
         scene: glass::scene,
+    },
+    Demo {
+        name: "shadow",
+        description: "solids round a lamp: shadow volumes counted in the stencil plane, darkened by the shadow bit",
+        frames: TURN,
+        scene: shadow::scene,
     },
     Demo {
         name: "effects",

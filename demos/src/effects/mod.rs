@@ -149,7 +149,15 @@ const PARTS: [Part; 13] = [
 ];
 
 /// Events that every hidden-surface unit has: those of the one that has power.
-const OF_THE_PATH: [Counter; 4] = [Counter::ZSpans, Counter::ZReads, Counter::ZWrites, Counter::ColourWrites];
+const OF_THE_PATH: [Counter; 7] = [
+    Counter::ZSpans,
+    Counter::ZReads,
+    Counter::ZWrites,
+    Counter::ColourWrites,
+    Counter::StencilTested,
+    Counter::StencilFailed,
+    Counter::StencilShadowed,
+];
 
 /// What a part of the card did for a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]

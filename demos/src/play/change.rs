@@ -129,7 +129,10 @@ impl Change {
                     material.fog_colour = colour;
                 });
             }
-            Change::Blend => each_material(scene, |material| material.blend = Blend::Alpha),
+            // What has a stencil test draws stencil values; no layer does.
+            Change::Blend => each_material(scene, |material| {
+                material.blend = if material.stencil.is_none() { Blend::Alpha } else { material.blend };
+            }),
             Change::Antialias(_) => {}
         }
     }

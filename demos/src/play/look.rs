@@ -92,7 +92,7 @@ fn filtered(batch: &mut Batch, filter: TextureFilter) {
 
 /// A batch of triangles as a surface that cannot be seen and its edges, as decals on it; others as they are.
 fn wires(mut batch: Batch, background: Colour) -> Vec<Batch> {
-    if batch.topology != Topology::Triangles {
+    if batch.topology != Topology::Triangles || batch.material.stencil.is_some_and(|stencil| !stencil.colours) {
         return vec![batch];
     }
     // Corners of different triangles at one place are one end of an edge.

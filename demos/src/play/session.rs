@@ -6,8 +6,8 @@ mod survey;
 use std::io::Write;
 use std::time::Instant;
 
-use zga_abi::Bus;
 use zga_abi::format::{self, DepthFunction};
+use zga_abi::{Bus, Effects};
 use zga_device::{Card, CardBus, CardOptions, Monitor};
 use zga_driver::bus::RecordingBus;
 use zga_driver::{Camera, Driver, DriverError, Frame, MeshBuffer, Rectangle, Target, TargetOptions, Vertex, Vertices};
@@ -32,6 +32,8 @@ pub struct Session<B: Bus = CardBus> {
     target: Target,
     settings: Settings,
     size: [u32; 2],
+    /// The target has a stencil plane.
+    stencil: bool,
     meshes: Vec<Uploaded>,
     textures: Textures,
     /// What the frame that was drawn last was seen by.
@@ -61,6 +63,7 @@ struct View {
     background: Colour,
     lights: Vec<zga_driver::Light>,
     ambient: Colour,
+    shadow: Option<scene::Shadow>,
     /// Depths are compared and stored.
     tests_depth: bool,
 }
@@ -68,8 +71,8 @@ struct View {
 impl View {
     fn of(scene: &Scene, look: Look) -> View {
         let lights = scene.lights.iter().map(effects::light).collect();
-        let Scene { camera, background, ambient, .. } = *scene;
-        View { camera, background, lights, ambient, tests_depth: look.tests_depth() }
+        let Scene { camera, background, ambient, shadow, .. } = *scene;
+        View { camera, background, lights, ambient, shadow, tests_depth: look.tests_depth() }
     }
 }
 
@@ -131,7 +134,8 @@ fn video_memory(scene: &Scene) -> u32 {
     };
     let batches = scene.batches();
     let words: usize = batches.iter().map(words).sum();
-    let bytes = 4 * 4 * pixels + 2 * (4 * words as u64 + effects::texture_bytes(&batches)) + (4 << 20);
+    let stencil = if asks_for_stencil(&batches) { pixels } else { 0 };
+    let bytes = 4 * 4 * pixels + stencil + 2 * (4 * words as u64 + effects::texture_bytes(&batches)) + (4 << 20);
     bytes.next_multiple_of(MEMORY_STEP).clamp(4 * MEMORY_STEP, MOST_MEMORY) as u32
 }
 
@@ -144,10 +148,12 @@ impl<B: Bus> Session<B> {
         // Every frame begins with a clear of everything, and depths are drawn again for those who ask for them.
         driver.set_keep_depth(false);
         let [width, height] = scene.size;
+        let stencil = driver.card_info().effects.contains(Effects::STENCIL) && asks_for_stencil(&scene.batches());
         let target = driver
             .create_target(TargetOptions {
                 depth: Some(settings.depth),
                 double_buffered: true,
+                stencil,
                 ..TargetOptions::new(width, height)
             })
             .map_err(fault())?;
@@ -157,6 +163,7 @@ impl<B: Bus> Session<B> {
             target,
             settings,
             size: scene.size,
+            stencil,
             meshes: Vec::new(),
             textures: Textures::default(),
             view: None,
@@ -232,9 +239,13 @@ impl<B: Bus> Session<B> {
 
     /// Puts the batches into video memory, with their textures; those that are there already stay.
     fn upload(&mut self, mut batches: Vec<Batch>) -> Result<()> {
-        let lacking = effects::reduce(&mut batches, self.driver.card_info().effects);
+        let has = self.driver.card_info().effects;
+        let lacking = effects::reduce(&mut batches, has);
         if !lacking.is_empty() {
             self.untold.push(format!("this card has no unit for {}; drawn without", lacking.join(", ")));
+        }
+        if self.settings.is_antialiased() && !effects::reduce(&mut batches, has - Effects::STENCIL).is_empty() {
+            self.untold.push("there is no stencil test with anti-aliasing; drawn without shadows".to_owned());
         }
         let mut old = std::mem::take(&mut self.meshes).into_iter();
         self.textures.begin();
@@ -263,7 +274,7 @@ impl<B: Bus> Session<B> {
 
     /// Draws what is in video memory, all of it or what lies inside `cut`; the clear is of everything.
     fn encode(&mut self, view: &View, cut: Option<Rectangle>) -> Result<()> {
-        let Self { name, driver, target, meshes, textures, drawn, settings, .. } = self;
+        let Self { name, driver, target, meshes, textures, drawn, settings, stencil, .. } = self;
         let masks = settings.is_antialiased();
         let fault = || Error::driver(name.as_str());
         drawn.clear();
@@ -274,10 +285,10 @@ impl<B: Bus> Session<B> {
             driver.set_scene_ambient(view.ambient).map_err(fault())?;
         }
         driver.set_depth_function(if view.tests_depth { DepthFunction::Less } else { DepthFunction::Always });
-        driver.set_depth_write(view.tests_depth);
+        driver.set_shadow(view.shadow.filter(|_| *stencil)).map_err(fault())?;
         driver.begin_scene(target).map_err(fault())?;
         driver.set_scissor(None);
-        driver.clear(Some(view.background), Some(1.0)).map_err(fault())?;
+        driver.clear_with_stencil(Some(view.background), Some(1.0), stencil.then_some(0)).map_err(fault())?;
         driver.set_scissor(cut);
         for Uploaded { batch, mesh, texture } in meshes {
             if mesh.primitives() == 0 {
@@ -291,6 +302,7 @@ impl<B: Bus> Session<B> {
                 driver.set_point_size(batch.extent.into()).map_err(place())?;
             }
             let texture = texture.and_then(|number| textures.get(number));
+            driver.set_depth_write(view.tests_depth && batch.material.depth_write);
             set_material(driver, batch, texture).map_err(place())?;
             match batch.slope {
                 Some(slope) => driver.decal(slope.into(), |driver| driver.draw_mesh(mesh)),
@@ -347,6 +359,11 @@ impl<B: Bus> Session<B> {
     }
 }
 
+/// Whether a material has a stencil test.
+fn asks_for_stencil(batches: &[Batch]) -> bool {
+    batches.iter().any(|batch| batch.material.stencil.is_some())
+}
+
 /// Normals of a batch, where they are in use.
 fn normals(batch: &Batch) -> Option<&[[f32; 3]]> {
     batch.normals.as_deref().filter(|_| batch.light != Lighting::None)
@@ -393,6 +410,7 @@ fn set_material<B: Bus>(
         driver.set_material(effects::material(material, batch.light))?;
     }
     driver.set_fog(effects::fog(material))?;
+    driver.set_stencil(material.stencil)?;
     driver.set_blend(effects::blend_mode(material.blend).filter(|_| batch.translucent))
 }
 

@@ -6,7 +6,8 @@
 
 use std::sync::Arc;
 
-pub use zga_abi::format::{TextureFormat, TextureFunction};
+pub use zga_abi::format::{DepthFunction, StencilOperation, TextureFormat, TextureFunction};
+pub use zga_driver::{Shadow, Stencil, StencilSide};
 
 use super::Colour;
 use super::settings::{named_values, names_of};
@@ -14,6 +15,10 @@ use crate::texture::{Indexed, Picture};
 
 /// Ways to store texels, by name.
 pub const TEXTURE_FORMATS: [(&str, TextureFormat); TextureFormat::ALL.len()] = names_of!(TextureFormat);
+/// Comparisons of a reference with a stencil value, by name.
+pub const STENCIL_FUNCTIONS: [(&str, DepthFunction); DepthFunction::ALL.len()] = names_of!(DepthFunction);
+/// What becomes of a stencil value, by name.
+pub const STENCIL_OPERATIONS: [(&str, StencilOperation); StencilOperation::ALL.len()] = names_of!(StencilOperation);
 /// Ways to combine a texel with the colour of the polygon, by name.
 pub const TEXTURE_FUNCTIONS: [(&str, TextureFunction); TextureFunction::ALL.len()] = names_of!(TextureFunction);
 
@@ -134,6 +139,10 @@ pub struct Material {
     pub depth_cue_scale: f32,
     /// Depth cueing: the surface's share at the viewer.
     pub depth_cue_offset: f32,
+    /// Depths of what is drawn are stored.
+    pub depth_write: bool,
+    /// Stencil test, and what becomes of stencil values; these begin as 0.
+    pub stencil: Option<Stencil>,
     /// The texture.
     pub texture: Option<Texture>,
 }
@@ -154,6 +163,8 @@ impl Default for Material {
             fog_colour: [0, 0, 0, 255],
             depth_cue_scale: 0.0,
             depth_cue_offset: 1.0,
+            depth_write: true,
+            stencil: None,
             texture: None,
         }
     }

@@ -28,8 +28,9 @@ use std::sync::Arc;
 pub use camera::{Camera, Orthographic, Perspective};
 pub(crate) use camera::{narrow, wide};
 pub use effects::{
-    Blend, FogFunction, Light, LightType, Lighting, Material, TEXTURE_FORMATS, TEXTURE_FUNCTIONS, Texture,
-    TextureFilter, TextureFormat, TextureFunction,
+    Blend, DepthFunction, FogFunction, Light, LightType, Lighting, Material, STENCIL_FUNCTIONS, STENCIL_OPERATIONS,
+    Shadow, Stencil, StencilOperation, StencilSide, TEXTURE_FORMATS, TEXTURE_FUNCTIONS, Texture, TextureFilter,
+    TextureFormat, TextureFunction,
 };
 pub use flatten::{Batch, Topology};
 pub use load::load;
@@ -75,6 +76,8 @@ pub struct Scene {
     pub ambient: Colour,
     /// Lights, by position in the list.
     pub lights: Vec<Light>,
+    /// What is darkened when all is drawn that hides something, if a material has a stencil test.
+    pub shadow: Option<Shadow>,
     /// Materials by name.
     pub materials: BTreeMap<String, Material>,
     /// What is drawn, in order.
@@ -239,6 +242,7 @@ impl Scene {
             card: CardSettings::default(),
             ambient: DARK,
             lights: Vec::new(),
+            shadow: None,
             materials: BTreeMap::new(),
             draw: Vec::new(),
         }

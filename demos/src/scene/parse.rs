@@ -45,7 +45,8 @@ fn syntax_error(file: &Path, fault: &serde_json::Error) -> Error {
 }
 
 fn document(tree: &Json) -> Read<Scene> {
-    let fields = tree.object(&["size", "background", "camera", "card", "ambient", "lights", "materials", "draw"])?;
+    let fields =
+        tree.object(&["size", "background", "camera", "card", "ambient", "lights", "shadow", "materials", "draw"])?;
     let size = fields
         .required("size", |value| value.array("whole numbers", |side| side.whole(1..=MAX_TARGET_PIXELS_PER_SIDE)))?;
     let camera = fields.or("camera", Camera::Screen, camera)?;
@@ -59,6 +60,7 @@ fn document(tree: &Json) -> Read<Scene> {
         card: fields.optional("card", card)?.unwrap_or_default(),
         ambient: fields.or("ambient", DARK, Json::colour)?,
         lights: fields.optional("lights", parse_effects::lights)?.unwrap_or_default(),
+        shadow: fields.optional("shadow", parse_effects::shadow)?,
         materials,
         draw,
     })

@@ -6,8 +6,8 @@ use zga_abi::light::MOST_LIGHTS;
 
 use super::Colour;
 use super::effects::{
-    Blend, FogFunction, Light, LightType, Lighting, Material, TEXTURE_FORMATS, TEXTURE_FUNCTIONS, Texture,
-    TextureFilter, TextureFormat,
+    Blend, FogFunction, Light, LightType, Lighting, Material, STENCIL_FUNCTIONS, STENCIL_OPERATIONS, Shadow, Stencil,
+    StencilOperation, StencilSide, TEXTURE_FORMATS, TEXTURE_FUNCTIONS, Texture, TextureFilter, TextureFormat,
 };
 use super::json::{ANY, Fault, Json, Object, Read};
 use crate::limits::MAX_PICTURE_SIDE;
@@ -82,6 +82,8 @@ fn material(value: &Json) -> Read<Material> {
         "fog_colour",
         "depth_cue_scale",
         "depth_cue_offset",
+        "depth_write",
+        "stencil",
         "texture",
     ])?;
     Ok(Material {
@@ -98,8 +100,46 @@ fn material(value: &Json) -> Read<Material> {
         fog_colour: fields.or("fog_colour", plain.fog_colour, Json::colour)?,
         depth_cue_scale: fields.or("depth_cue_scale", plain.depth_cue_scale, |value| value.number(ANY))?,
         depth_cue_offset: fields.or("depth_cue_offset", plain.depth_cue_offset, |value| value.number(ANY))?,
+        depth_write: fields.or("depth_write", plain.depth_write, Json::flag)?,
+        stencil: fields.optional("stencil", stencil)?,
         texture: fields.optional("texture", texture)?,
     })
+}
+
+fn stencil(value: &Json) -> Read<Stencil> {
+    let plain = Stencil::default();
+    let fields = value.object(&["function", "reference", "read_mask", "write_mask", "front", "back", "colours"])?;
+    Ok(Stencil {
+        function: fields.or("function", plain.function, |value| value.named(&STENCIL_FUNCTIONS))?,
+        reference: fields.or("reference", plain.reference, byte)?,
+        read_mask: fields.or("read_mask", plain.read_mask, byte)?,
+        write_mask: fields.or("write_mask", plain.write_mask, byte)?,
+        front: fields.or("front", plain.front, stencil_side)?,
+        back: fields.or("back", plain.back, stencil_side)?,
+        colours: fields.or("colours", plain.colours, Json::flag)?,
+    })
+}
+
+fn stencil_side(value: &Json) -> Read<StencilSide> {
+    let fields = value.object(&["fail", "depth_fail", "pass"])?;
+    let operation = |name: &str| fields.or(name, StencilOperation::Keep, |value| value.named(&STENCIL_OPERATIONS));
+    Ok(StencilSide { fail: operation("fail")?, depth_fail: operation("depth_fail")?, pass: operation("pass")? })
+}
+
+/// The shadow bit of a scene.
+pub(super) fn shadow(value: &Json) -> Read<Shadow> {
+    let plain = Shadow::default();
+    let fields = value.object(&["function", "reference", "read_mask", "intensity"])?;
+    Ok(Shadow {
+        function: fields.or("function", plain.function, |value| value.named(&STENCIL_FUNCTIONS))?,
+        reference: fields.or("reference", plain.reference, byte)?,
+        read_mask: fields.or("read_mask", plain.read_mask, byte)?,
+        intensity: fields.or("intensity", plain.intensity, byte)?,
+    })
+}
+
+fn byte(value: &Json) -> Read<u8> {
+    value.whole(0..=255).map(|value| value as u8)
 }
 
 fn texture(value: &Json) -> Read<Texture> {

@@ -109,4 +109,7 @@ counters! {
     LayersSortedPixels "layers.sorted_pixels" "Pixels whose translucent fragments had to be sorted one by one.",
     BitmapCombined "bitmap.combined" "Pixels that a raster operation or a plane mask combined with what was there.",
     BitmapStretched "bitmap.stretched" "Pixels that a stretch made.",
+    StencilTested "stencil.tested" "Fragments whose pixel's stencil value was read and compared.",
+    StencilFailed "stencil.failed" "Fragments among them that failed the stencil test.",
+    StencilShadowed "stencil.shadowed" "Pixels that the shadow bit darkened.",
 }

@@ -230,6 +230,28 @@ enumeration! {
 }
 
 enumeration! {
+    /// What becomes of a pixel's stencil value. Only bits of the write mask change.
+    StencilOperation {
+        /// It stays.
+        Keep = 0 "keep",
+        /// 0.
+        Zero = 1 "zero",
+        /// The reference.
+        Replace = 2 "replace",
+        /// One more; 255 stays.
+        Increment = 3 "increment",
+        /// One less; 0 stays.
+        Decrement = 4 "decrement",
+        /// All bits change.
+        Invert = 5 "invert",
+        /// One more; 0 follows 255.
+        IncrementWrap = 6 "increment-wrap",
+        /// One less; 255 follows 0.
+        DecrementWrap = 7 "decrement-wrap",
+    }
+}
+
+enumeration! {
     /// How the vertices of a draw make primitives.
     Topology {
         /// Three vertices each.

@@ -52,7 +52,7 @@ opcodes! {
     BeginScene = 0x02 "BEGIN_SCENE" "",
     /// Ends the scene: everything drawn is in memory.
     EndScene = 0x03 "END_SCENE" "",
-    /// Clears frame buffer (bit 0 of planes) and Z buffer (bit 1) inside the scissor. Colour as in MATERIAL_COLOUR.
+    /// Clears frame buffer (bit 0 of planes), Z buffer (bit 1) and stencil plane (bit 2, to bits 15:8 of planes; no mask) inside the scissor. Colour as in MATERIAL_COLOUR.
     Clear = 0x04 "CLEAR" "planes, colour, depth",
     /// Draws from vertices (and indices) in the packet. Flags as in [`DrawFlags`].
     DrawInline = 0x10 "DRAW_INLINE" "flags, vertices, indices, vertex words ..., index words ...",
@@ -100,6 +100,10 @@ pub const fn payload_words(header: u32) -> u32 {
 pub const CLEAR_COLOUR: u32 = 1 << 0;
 /// Clears the Z buffer.
 pub const CLEAR_DEPTH: u32 = 1 << 1;
+/// Clears the stencil plane.
+pub const CLEAR_STENCIL: u32 = 1 << 2;
+/// Place of the value that the stencil plane is cleared to: 8 bits, in the word that names the planes.
+pub const CLEAR_STENCIL_SHIFT: u32 = 8;
 
 /// The flags word of a draw packet.
 ///

@@ -189,6 +189,10 @@ registers! {
         12:8 "fraction" "fraction bits of the gradients: 0, 8, 16 or 24";
         4:0 "bits" "bits of a depth: 16, 24 or 31";
     }
+    /// First byte of the stencil plane in video memory, a multiple of 64. One byte a pixel.
+    StencilBase "STENCIL_BASE" @ 0x021C [1] ReadWrite reset &[0], writable 0xFFFF_FFC0, w1c 0, {}
+    /// Bytes from one row of the stencil plane to the next, a multiple of 64; 0 is no plane, and no draw may call for the effect `stencil`.
+    StencilPitch "STENCIL_PITCH" @ 0x0220 [1] ReadWrite reset &[0], writable 0x000F_FFC0, w1c 0, {}
 
     // Path and accuracy: sampled by begin scene ----------------------------------------------
     /// Hidden-surface path that decides visibility.
@@ -344,6 +348,23 @@ registers! {
     BlendControl "BLEND_CONTROL" @ 0x0324 [1] ReadWrite reset &[0], writable 0x7, w1c 0, {
         2:0 "mode" "0 alpha, 1 add, 2 multiply, 3 premultiplied";
     }
+    /// Stencil test, and what becomes of a pixel's stencil value: an operation for a fragment that fails the stencil test, one for a fragment that passes it and fails the depth test, one for a fragment that passes both. The front of a triangle is where its vertices run counter-clockwise on the screen; lines and points show their front. Operations: 0 keep, 1 zero, 2 replace (by the reference), 3 increment, 4 decrement (these stop at 255 and 0), 5 invert, 6 increment-wrap, 7 decrement-wrap.
+    StencilControl "STENCIL_CONTROL" @ 0x0328 [1] ReadWrite reset &[0x0000_0007], writable 0x7777_7717, w1c 0, {
+        30:28 "back_pass" "operation";
+        26:24 "back_depth_fail" "operation";
+        22:20 "back_fail" "operation";
+        18:16 "front_pass" "operation";
+        14:12 "front_depth_fail" "operation";
+        10:8 "front_fail" "operation";
+        4:4 "colour_off" "1: pixels that pass keep their colour";
+        2:0 "function" "reference against stored value, both masked: 0 never, 1 less, 2 equal, 3 less-equal, 4 greater, 5 not-equal, 6 greater-equal, 7 always";
+    }
+    /// What the stencil test compares and changes.
+    StencilValue "STENCIL_VALUE" @ 0x032C [1] ReadWrite reset &[0x00FF_FF00], writable 0x00FF_FFFF, w1c 0, {
+        23:16 "write_mask" "bits of the stored value that operations may change";
+        15:8 "read_mask" "bits of reference and stored value that are compared";
+        7:0 "reference" "";
+    }
     /// How fog grows with the distance from the viewer.
     FogControl "FOG_CONTROL" @ 0x0330 [1] ReadWrite reset &[0], writable 0x7, w1c 0, {
         2:0 "function" "0 none, 1 linear, 2 exponential, 3 exponential-squared, 4 depth-cue";
@@ -398,6 +419,19 @@ registers! {
     }
     /// Sharpness of the material's highlights, f32, 0..=128.
     MaterialShininess "MATERIAL_SHININESS" @ 0x0368 [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {}
+
+    // Shadow bit: sampled by end scene ---------------------------------------------------------
+    /// Which pixels of a scene that called for the effect `stencil` lie in shadow when its opaque picture is done: those whose stencil value passes this test.
+    ShadowControl "SHADOW_CONTROL" @ 0x0380 [1] ReadWrite reset &[0x00FF_0050], writable 0x00FF_FF71, w1c 0, {
+        23:16 "read_mask" "bits of reference and stored value that are compared";
+        15:8 "reference" "";
+        6:4 "function" "reference against stored value, both masked; values as in STENCIL_CONTROL";
+        0:0 "enable" "1: pixels in shadow are darkened";
+    }
+    /// What is left of the light in shadow.
+    ShadowIntensity "SHADOW_INTENSITY" @ 0x0384 [1] ReadWrite reset &[0x80], writable 0xFF, w1c 0, {
+        7:0 "intensity" "each colour channel is multiplied by intensity / 255 and rounded to the nearest level";
+    }
 
     // Geometry: sampled by each draw ---------------------------------------------------------
     /// Object to eye, 4x4 f32, row-major for row vectors.

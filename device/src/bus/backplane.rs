@@ -39,7 +39,8 @@ const EFFECTS: Effects = Effects::DEPTH
     .union(Effects::FOG)
     .union(Effects::BLEND)
     .union(Effects::PUNCH_THROUGH)
-    .union(Effects::ANTI_ALIAS);
+    .union(Effects::ANTI_ALIAS)
+    .union(Effects::STENCIL);
 /// Hidden-surface paths that this card has, as in CAPABILITY_PATHS.
 const PATHS: u32 = {
     let (mut paths, mut index) = (0, 0);

@@ -3,6 +3,7 @@
 //! The clocked models of the systolic array and of the tile unit see a whole scene at once. Here it
 //! waits, in order of submission.
 
+use super::stencil::{StencilRows, StencilRule, Stencilled};
 use super::z_buffer::DepthTest;
 use crate::geometry::assembly::{List, Shape};
 use crate::hidden::z_buffer::band::Setting;
@@ -10,7 +11,7 @@ use crate::shading::parameters::Parameters;
 use crate::shading::pixel::{PixelShading, ShadingCounts};
 use crate::shading::plane::{Interpolation, Shade};
 use std::sync::Arc;
-use zga_firmware::checked::{Rectangle, Target};
+use zga_firmware::checked::{Rectangle, Stencil, Target};
 
 /// Most items of a scene that is held back: about 300 MiB.
 pub const HELD_LIMIT: usize = 1 << 20;
@@ -26,6 +27,8 @@ pub struct HeldDraw {
     pub shading: Option<HeldShading>,
     /// Pixels that may change, inside the target.
     pub scissor: Rectangle,
+    /// Stencil test; `None` where it is not called for.
+    pub stencil: Option<Stencil>,
 }
 
 /// What the colours of one primitive go through.
@@ -65,6 +68,18 @@ impl HeldDraw {
         self.interpolation != Interpolation::Flat || self.shading.is_some()
     }
 
+    /// Whether pixels that pass get a colour.
+    #[must_use]
+    pub fn draws_colours(&self) -> bool {
+        self.stencil.is_none_or(|stencil| !stencil.colour_off)
+    }
+
+    /// What becomes of stencil values where a primitive is drawn.
+    #[must_use]
+    pub fn stencil_rule(&self, shape: &Shape) -> StencilRule {
+        self.stencil.map_or(StencilRule::Keep, |rule| StencilRule::Test(Stencilled::of(rule, shape)))
+    }
+
     /// Whether the texture has holes.
     #[must_use]
     pub fn has_holes(&self) -> bool {
@@ -99,6 +114,8 @@ pub enum Item {
         colour: Option<u32>,
         /// Depth to be stored.
         depth: Option<i32>,
+        /// Stencil value to be stored.
+        stencil: Option<u8>,
     },
 }
 
@@ -110,13 +127,16 @@ pub struct Depths<'m> {
     pub rows: &'m mut [i32],
     /// Elements from a row to the next; 0 where nobody asks.
     pub pitch: usize,
+    /// Stencil values beside them, where the scene asks for any.
+    pub stencil: StencilRows<'m>,
 }
 
 impl<'m> Depths<'m> {
     /// Those of the target's Z buffer, which are in `rows`; nobody's where there is none.
     #[must_use]
     pub fn of(target: &Target, rows: &'m mut [i32]) -> Self {
-        Depths { rows, pitch: target.depth.map_or(0, |depth| depth.pitch as usize / 4) }
+        let pitch = target.depth.map_or(0, |depth| depth.pitch as usize / 4);
+        Depths { rows, pitch, stencil: StencilRows::none() }
     }
 
     /// Depth of pixel (`x`, `y`); anything below the last line.
@@ -133,12 +153,15 @@ pub struct Background {
     pub colour: Option<u32>,
     /// Depth of a clear of all pixels; `None`: what the Z buffer holds, or the farthest depth where there is none.
     pub depth: Option<i32>,
+    /// Stencil value of a clear of all pixels; `None`: what the stencil plane holds.
+    pub stencil: Option<u8>,
 }
 
 impl Background {
     /// A clear of all pixels; planes that it leaves alone stay.
-    pub fn add(&mut self, colour: Option<u32>, depth: Option<i32>) {
-        *self = Background { colour: colour.or(self.colour), depth: depth.or(self.depth) };
+    pub fn add(&mut self, colour: Option<u32>, depth: Option<i32>, stencil: Option<u8>) {
+        let (colour, depth) = (colour.or(self.colour), depth.or(self.depth));
+        *self = Background { colour, depth, stencil: stencil.or(self.stencil) };
     }
 }
 
@@ -174,12 +197,27 @@ impl Held {
     }
 
     /// Adds a clear, to the background or to what is drawn over it.
-    pub fn clear(&mut self, background: bool, area: Rectangle, colour: Option<u32>, depth: Option<i32>) {
+    pub fn clear(
+        &mut self,
+        background: bool,
+        area: Rectangle,
+        colour: Option<u32>,
+        depth: Option<i32>,
+        stencil: Option<u8>,
+    ) {
         if background {
-            self.background.add(colour, depth);
+            self.background.add(colour, depth, stencil);
         } else {
-            self.items.push(Item::Clear { area, colour, depth });
+            self.items.push(Item::Clear { area, colour, depth, stencil });
         }
+    }
+
+    /// Whether the scene has to do with stencil values.
+    #[must_use]
+    pub fn asks_for_stencil(&self) -> bool {
+        self.background.stencil.is_some()
+            || self.draws.iter().any(|draw| draw.stencil.is_some())
+            || self.items.iter().any(|item| matches!(item, Item::Clear { stencil: Some(_), .. }))
     }
 
     /// Wants no more.

@@ -11,6 +11,9 @@
 //! that wait there are taken back. A clear that writes colours takes back the layers that wait in its pixels: nobody will see them. One of depths alone
 //! lets them be seen first: what waits in its pixels is composed before it.
 //!
+//! A layer with a stencil test is tested against the plane as the opaque picture left it, before its depth is; no layer
+//! changes a stencil value. What is opaque and has a stencil test takes no layer back, since the plane has gone on by then.
+//!
 //! | file | part |
 //! | --- | --- |
 //! | [`blend`] | one layer over one colour |
@@ -24,7 +27,7 @@
 //! Inputs from: [`crate::subpixel::scene`], frame buffer and depths of the opaque picture. Outputs to: frame buffer.
 //!
 //! # Clocks
-//! 1 a fragment tested, 1 a fragment blended, 1 a comparison. Each fragment that passed is compared with the one that
+//! 1 a fragment tested, 1 more one with a stencil test, 1 a fragment blended, 1 a comparison. Each fragment that passed is compared with the one that
 //! passed before it at its pixel: with n of them that is n - 1. Where they did not come in the order in which they are
 //! composed, each is compared with each other, n (n - 1) / 2 in all, which gives it its rank. An interpolated colour is 1
 //! clock of the shading unit. Levels are of 8 bits from layer to layer; a pixel is read and written once, in the clocks of
@@ -40,6 +43,7 @@ mod tests;
 pub mod tile;
 pub mod unit;
 
+use crate::hidden::stencil::StencilCounts;
 use crate::probe::account::{Account, Clocks};
 use crate::shading::pixel::ShadingCounts;
 use crate::subpixel::scene::ItemDraw;
@@ -60,13 +64,17 @@ pub struct Setting {
     pub depth_pitch: usize,
     /// Pixels that may change, inside the target.
     pub area: Pixels,
+    /// Bytes from a row of stencil values to the next; 0 where there are none.
+    pub stencil_pitch: usize,
 }
 
 /// Events of the unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Fragments that came to the test.
+    /// Fragments that came to the depth test, or to the stencil test before it.
     pub fragments: u64,
+    /// Events of the stencil test.
+    pub stencil: StencilCounts,
     /// Fragments that passed and were blended.
     pub blended: u64,
     /// Pixels whose fragments did not come in order.
@@ -85,6 +93,7 @@ impl crate::pipeline::bands::Counts for Counts {
     fn plus(self, other: Counts) -> Counts {
         Counts {
             fragments: self.fragments + other.fragments,
+            stencil: self.stencil.plus(other.stencil),
             blended: self.blended + other.blended,
             sorted_pixels: self.sorted_pixels + other.sorted_pixels,
             comparisons: self.comparisons + other.comparisons,
@@ -109,7 +118,7 @@ impl Counts {
     /// Clocks of the unit, without shading.
     #[must_use]
     pub fn clocks(&self) -> Clocks {
-        Clocks(self.fragments + self.blended + self.comparisons)
+        Clocks(self.fragments + self.stencil.tested + self.blended + self.comparisons)
     }
 }
 
@@ -123,4 +132,5 @@ pub fn charge(counts: &Counts, account: &mut Account) {
     account.add(Counter::ShadingPixels, counts.shaded);
     account.charge(Counter::CyclesShading, Clocks(counts.shaded));
     counts.shading.charge(account);
+    counts.stencil.charge(account);
 }

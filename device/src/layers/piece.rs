@@ -16,7 +16,7 @@ use crate::subpixel::scene::{Item, ItemDraw, Kind};
 use fearless_simd::prelude::*;
 use fearless_simd::u32x16;
 use zga_abi::format::{BlendMode, DepthFormat};
-use zga_firmware::checked::Rectangle;
+use zga_firmware::checked::{Rectangle, StencilTest};
 
 /// What stands for the depth of a layer that is not tested: nearer than all.
 pub const NEAREST: i32 = -1;
@@ -164,6 +164,12 @@ impl Piece {
     #[must_use]
     pub fn colours(&self, draws: &[ItemDraw]) -> Colours {
         Colours(colour_plane(&self.shape, &draws[self.draw as usize].shade()))
+    }
+
+    /// Its stencil test, where it has one.
+    #[must_use]
+    pub fn stencil<'a>(&self, draws: &'a [ItemDraw]) -> Option<&'a StencilTest> {
+        draws[self.draw as usize].stencil.as_ref()
     }
 
     /// Whether a pixel that it covers is a hole of its texture.

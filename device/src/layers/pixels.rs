@@ -12,6 +12,7 @@ use super::canvas::Canvas;
 use super::piece::{Colours, Part};
 use super::tile::{Place, blend_at};
 use crate::geometry::plane::below;
+use crate::hidden::stencil::StencilCounts;
 
 /// A layer, or a clear, on a row.
 #[derive(Clone, Copy, Debug)]
@@ -96,8 +97,9 @@ impl Pixels {
         counts: &mut Counts,
     ) {
         let stored = place.depth_at(x, y);
+        let value = place.stencil_at(x, y);
         self.fragments.clear();
-        let mut came = 0;
+        let (mut came, mut tests) = (0, StencilCounts::default());
         for span in self.spans.iter().filter(|span| (span.from..span.to).contains(&x)) {
             let piece = match &parts[span.part as usize] {
                 Part::Layer(piece) => piece,
@@ -105,18 +107,26 @@ impl Pixels {
                     let hole = matches!(part, Part::Cover(piece) if piece.is_hole(place.draws, x, y));
                     if !hole {
                         self.fragments.clear();
-                        came = 0;
+                        (came, tests) = (0, StencilCounts::default());
                     }
                     continue;
                 }
             };
             came += 1;
+            if let Some(test) = piece.stencil(place.draws) {
+                let failed = u64::from(!test.passes(value));
+                tests = tests.plus(StencilCounts { tested: 1, failed });
+                if failed == 1 {
+                    continue;
+                }
+            }
             let depth = piece.depth(x, y, below);
             if piece.test.is_none_or(|test| test.passes(depth, stored)) {
                 self.fragments.push(Fragment { depth, number: span.part });
             }
         }
         counts.fragments += came;
+        counts.stencil = counts.stencil.plus(tests);
         sort(&mut self.fragments, counts);
         for fragment in &self.fragments {
             let part = fragment.number as usize;

@@ -12,6 +12,7 @@ use crate::geometry::assembly::{Point, Shape};
 use crate::geometry::line::Line;
 use crate::geometry::plane::below;
 use crate::geometry::triangle::Triangle;
+use crate::hidden::stencil::StencilCounts;
 use crate::hidden::z_buffer::specification::{colour_plane, meets};
 use crate::subpixel::scene::{Item, Kind, Scene};
 use zga_abi::format::{DepthFormat, PixelFormat};
@@ -28,7 +29,7 @@ fn shape(item: &Item, format: DepthFormat) -> Option<Shape> {
 }
 
 /// Composes what waits in the pixels of the setting's area, on whole surfaces.
-pub fn compose(setting: &Setting, scene: &Scene, colours: &mut [u32], depths: &[i32]) -> Counts {
+pub fn compose(setting: &Setting, scene: &Scene, colours: &mut [u32], depths: &[i32], values: &[u8]) -> Counts {
     let mut counts = Counts::default();
     let below = below(setting.format);
     let shapes: Vec<Option<Shape>> = scene.items.iter().map(|item| shape(item, setting.format)).collect();
@@ -36,7 +37,8 @@ pub fn compose(setting: &Setting, scene: &Scene, colours: &mut [u32], depths: &[
     let [columns, rows] = setting.area;
     for (x, y) in (rows[0]..rows[1]).flat_map(|y| (columns[0]..columns[1]).map(move |x| (x, y))) {
         let stored = depths.get(y as usize * setting.depth_pitch + x as usize).copied().unwrap_or(0);
-        let mut came = 0;
+        let value = values.get(y as usize * setting.stencil_pitch + x as usize).copied().unwrap_or(0);
+        let (mut came, mut tests) = (0, StencilCounts::default());
         fragments.clear();
         for ((item, shape), number) in scene.items.iter().zip(&shapes).zip(0..) {
             let draw = &scene.draws[item.draw as usize];
@@ -46,7 +48,7 @@ pub fn compose(setting: &Setting, scene: &Scene, colours: &mut [u32], depths: &[
             }
             if item.kind == Kind::Clear {
                 fragments.clear();
-                came = 0;
+                (came, tests) = (0, StencilCounts::default());
             }
             let Some(shape) = shape.as_ref().filter(|shape| meets(shape, x, y)) else {
                 continue;
@@ -54,11 +56,18 @@ pub fn compose(setting: &Setting, scene: &Scene, colours: &mut [u32], depths: &[
             if draw.is_opaque(&item.vertices) {
                 if !(draw.has_holes() && colour_plane(shape, &draw.shade()).is_hole(x, y)) {
                     fragments.clear();
-                    came = 0;
+                    (came, tests) = (0, StencilCounts::default());
                 }
                 continue;
             }
             came += 1;
+            if let Some(test) = draw.stencil {
+                let failed = u64::from(!test.passes(value));
+                tests = tests.plus(StencilCounts { tested: 1, failed });
+                if failed == 1 {
+                    continue;
+                }
+            }
             let plane = shape.plane(setting.format);
             let depth = plane.stored(plane.value(x, y), below);
             match draw.test {
@@ -68,6 +77,7 @@ pub fn compose(setting: &Setting, scene: &Scene, colours: &mut [u32], depths: &[
             }
         }
         counts.fragments += came;
+        counts.stencil = counts.stencil.plus(tests);
         sort(&mut fragments, &mut counts);
         let mut pixel = Pixel { words: colours, setting, x: x as usize, y: y as usize };
         let mut colour = pixel.get();

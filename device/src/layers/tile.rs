@@ -38,6 +38,10 @@ pub struct Place<'a> {
     pub format: DepthFormat,
     /// State of the layers' draws.
     pub draws: &'a [ItemDraw],
+    /// Stencil values, from the tile's first row on; empty where there are none.
+    pub stencil: &'a [u8],
+    /// Bytes from a row of stencil values to the next.
+    pub stencil_pitch: usize,
 }
 
 impl Place<'_> {
@@ -54,6 +58,13 @@ impl Place<'_> {
     pub fn depth_at(&self, x: i32, y: i32) -> i32 {
         let row = (y - self.corner[1]) as usize;
         self.depth.get(row * self.depth_pitch + x as usize).copied().unwrap_or(0)
+    }
+
+    /// Stencil value of pixel (`x`, `y`); means nothing where there are none.
+    #[must_use]
+    pub fn stencil_at(&self, x: i32, y: i32) -> u8 {
+        let row = (y - self.corner[1]) as usize;
+        self.stencil.get(row * self.stencil_pitch + x as usize).copied().unwrap_or(0)
     }
 
     /// Least and greatest opaque depth of the tile's pixels.
@@ -104,14 +115,15 @@ pub struct Order {
 }
 
 impl Order {
-    /// Puts the layers of a tile in order; `false` if no order holds for all of its pixels.
+    /// Puts the layers of a tile in order; `false` if no order holds for all of its pixels, or a layer has a stencil test,
+    /// which is made pixel by pixel.
     #[inline(always)]
-    pub fn find(&mut self, parts: &[Part], format: DepthFormat) -> bool {
+    pub fn find(&mut self, parts: &[Part], format: DepthFormat, draws: &[ItemDraw]) -> bool {
         self.places.clear();
         for (place, part) in (0..).zip(parts) {
             match part {
-                Part::Layer(piece) => self.places.push((piece.range(format), place)),
-                Part::Clear(_) | Part::Cover(_) => return false,
+                Part::Layer(piece) if piece.stencil(draws).is_none() => self.places.push((piece.range(format), place)),
+                Part::Layer(_) | Part::Clear(_) | Part::Cover(_) => return false,
             }
         }
         self.places.sort_unstable_by_key(|&([near, _], place)| (std::cmp::Reverse(near), place));

@@ -135,6 +135,7 @@ impl Unit {
         pool: Option<&ThreadPool>,
         colours: &mut [u32],
         depths: &mut [i32],
+        values: &mut [u8],
         stop: &dyn Fn(Clocks) -> Option<Stopped>,
     ) -> (Counts, Result<(), Stopped>) {
         let mut total = Counts::default();
@@ -142,7 +143,7 @@ impl Unit {
         let Some(level) = level else {
             for y in setting.area[1][0]..setting.area[1][1] {
                 let row = Setting { area: [setting.area[0], [y, y + 1]], ..*setting };
-                total = total.plus(specification::compose(&row, scene, colours, depths));
+                total = total.plus(specification::compose(&row, scene, colours, depths, values));
                 if let Err(stopped) = ends(&total) {
                     return (total, Err(stopped));
                 }
@@ -169,16 +170,17 @@ impl Unit {
                 } else {
                     Plane::new(depths, setting.depth_pitch, first)
                 },
+                stencil: Plane::new(values, setting.stencil_pitch, first),
                 words: Plane::none(),
                 sight: Sight::none(),
             };
             if weight > WEIGHT {
                 let mut mine = works[0].lock().unwrap_or_else(PoisonError::into_inner);
-                let Surfaces { colour, depth, .. } = planes;
+                let Surfaces { colour, depth, stencil, .. } = planes;
                 for tile in tiles(&setting.area) {
                     for y in rows_of(first)[0]..rows_of(first)[1] {
                         let area = common(&setting.area, &[tile, [y, y + 1]]);
-                        total = total.plus(input.band(first, &area, colour.rows, depth.rows, &mut mine));
+                        total = total.plus(input.band(first, &area, colour.rows, depth.rows, stencil.rows, &mut mine));
                         if let Err(stopped) = ends(&total) {
                             return (total, Err(stopped));
                         }
@@ -189,7 +191,8 @@ impl Unit {
                     // Each thread has its own; nobody ever waits here.
                     let mine = &works[rayon::current_thread_index().unwrap_or(0).min(threads - 1)];
                     let mut mine = mine.lock().unwrap_or_else(PoisonError::into_inner);
-                    input.band(band, &setting.area, planes.colour.rows, planes.depth.rows, &mut mine)
+                    let Surfaces { colour, depth, stencil, .. } = planes;
+                    input.band(band, &setting.area, colour.rows, depth.rows, stencil.rows, &mut mine)
                 };
                 total = total.plus(match pool {
                     Some(pool) => pool.install(|| each_band(true, planes, first..beyond, &draw)),
@@ -235,7 +238,15 @@ fn find(reaches: &mut Vec<Reach>, setting: &Setting, scene: &Scene, bands: &[[u1
 
 impl Input<'_> {
     /// Composes the pixels of `area` in a band; the surfaces begin with its first row.
-    fn band(&self, band: usize, area: &Pixels, colours: &mut [u32], depths: &[i32], work: &mut Work) -> Counts {
+    fn band(
+        &self,
+        band: usize,
+        area: &Pixels,
+        colours: &mut [u32],
+        depths: &[i32],
+        values: &[u8],
+        work: &mut Work,
+    ) -> Counts {
         let Input { setting, scene, bands, level } = *self;
         let mut counts = Counts::default();
         find(&mut work.reaches, setting, scene, bands, band, area);
@@ -265,7 +276,8 @@ impl Input<'_> {
             }
             let corner = [tile[0], rows[0]];
             let (depth, depth_pitch, format) = (depths, setting.depth_pitch, setting.format);
-            let place = Place { corner, area, depth, depth_pitch, format, draws: &scene.draws };
+            let (stencil, stencil_pitch) = (values, setting.stencil_pitch);
+            let place = Place { corner, area, depth, depth_pitch, format, draws: &scene.draws, stencil, stencil_pitch };
             let (words, pitch) = (&mut *colours, setting.colour_pitch);
             let mut frame = Frame { words, pitch, format: setting.pixel_format, x: tile[0] as usize };
             counts = counts.plus(dispatch!(level, simd => work.tile(simd, &place, &mut frame)));
@@ -283,7 +295,7 @@ impl Work {
         let areas = parts.iter().map(|part| part.area()[1]);
         let [top, bottom] = areas.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or(place.area[1]);
         let rows = [top, bottom].map(|y| (y - place.corner[1]) as usize);
-        let found = order.find(parts, place.format);
+        let found = order.find(parts, place.format, place.draws);
         let ordered = !found || order.is_of_submission();
         canvas.load(simd, frame, rows, ordered);
         if found {

@@ -99,7 +99,7 @@ impl Area {
     /// Its part of both memories.
     fn surfaces<'m>(&self, video: &'m mut [u32], za: &'m mut [i32]) -> Surfaces<'m> {
         let (colour, depth) = surfaces_of(video, &self.colour, self.depth.as_ref());
-        Surfaces { colour, depth, words: &mut za[self.words()] }
+        Surfaces { colour, depth, words: &mut za[self.words()], stencil: &mut [] }
     }
 
     /// Clears a part of the frame, or one of its planes; `pixel` as it is stored. The words must be exact.
@@ -287,6 +287,7 @@ impl Areas {
     pub(crate) fn begin_scene(&mut self, parts: &mut Parts<'_>, target: &Target, account: &mut Account) {
         let mine = Area::of(target);
         let (colour, depth, words) = (mine.colour_bytes(), mine.depth_bytes(), mine.words());
+        let stencil = stencil_bytes(target);
         // Frames that lie in the way go to memory. A Z buffer can be shared as long as the first command
         // is a clear: that is seen then.
         self.settle_where(parts, account, |area| {
@@ -295,6 +296,8 @@ impl Areas {
                     || overlap(&area.colour_bytes(), &colour)
                     || overlap(&area.colour_bytes(), &depth)
                     || overlap(&area.depth_bytes(), &colour)
+                    || overlap(&area.colour_bytes(), &stencil)
+                    || overlap(&area.depth_bytes(), &stencil)
                     || (overlap(&area.depth_bytes(), &depth) && area.depth_bytes() != depth))
         });
         match self.areas.iter().position(|area| area.is_of(target)) {
@@ -388,7 +391,7 @@ impl Areas {
     /// Another path begins a scene on `target`: frames that it touches go to memory and are forgotten.
     pub(crate) fn release_target(&mut self, parts: &mut Parts<'_>, target: &Target, account: &mut Account) {
         let mine = Area::of(target);
-        let surfaces = [mine.colour_bytes(), mine.depth_bytes()];
+        let surfaces = [mine.colour_bytes(), mine.depth_bytes(), stencil_bytes(target)];
         self.settle_where(parts, account, |area| {
             surfaces.iter().any(|s| overlap(&area.colour_bytes(), s) || overlap(&area.depth_bytes(), s))
         });
@@ -409,6 +412,11 @@ impl Areas {
             self.areas.iter_mut().for_each(|area| area.exact = false);
         }
     }
+}
+
+/// Bytes of a target's stencil plane; none without one.
+fn stencil_bytes(target: &Target) -> Range<u64> {
+    target.stencil.map_or(0..0, |plane| bytes(plane.base, plane.pitch, target.colour.height))
 }
 
 /// Brings an area's cleared blocks to memory: depths too, unless the Z buffer is another frame's by now.

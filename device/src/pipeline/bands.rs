@@ -48,6 +48,8 @@ pub struct Surfaces<'m> {
     pub colour: Plane<'m, u32>,
     /// Depths; none where depth is not called for.
     pub depth: Plane<'m, i32>,
+    /// Stencil values; none where no stencil test is called for.
+    pub stencil: Plane<'m, u8>,
     /// Za words, of paths that have them.
     pub words: Plane<'m, i32>,
     /// What a path that shades late knows of its pixels.
@@ -105,6 +107,7 @@ impl Surfaces<'_> {
     fn split(self, bands: usize) -> (Self, Self) {
         let (colour, colour_after) = self.colour.split(bands);
         let (depth, depth_after) = self.depth.split(bands);
+        let (stencil, stencil_after) = self.stencil.split(bands);
         let (words, words_after) = self.words.split(bands);
         let (winner, winner_after) = self.sight.winner.split(bands);
         let (late, late_after) = self.sight.late.split(bands);
@@ -112,10 +115,11 @@ impl Surfaces<'_> {
         let (costs, costs_after) = self.sight.costs.split(bands);
         let cost = self.sight.cost;
         (
-            Surfaces { colour, depth, words, sight: Sight { winner, late, tokens, costs, cost } },
+            Surfaces { colour, depth, stencil, words, sight: Sight { winner, late, tokens, costs, cost } },
             Surfaces {
                 colour: colour_after,
                 depth: depth_after,
+                stencil: stencil_after,
                 words: words_after,
                 sight: Sight { winner: winner_after, late: late_after, tokens: tokens_after, costs: costs_after, cost },
             },

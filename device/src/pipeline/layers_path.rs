@@ -1,12 +1,12 @@
 //! The layer unit's way through the pipeline: what may be translucent waits while the path draws the rest, and is
 //! composed over it when the scene ends.
 //!
-//! In its midst that is done before a clear of depths alone, since these decide what is seen of the layers: in the pixels
-//! cleared, which hold no layer from there on; elsewhere they go on waiting. A path that sorts before it draws first draws what it has, and
+//! In its midst that is done before a clear of depths or stencil values without colours, since these decide what is seen of
+//! the layers: in the pixels cleared, which hold no layer from there on; elsewhere they go on waiting. A path that sorts before it draws first draws what it has, and
 //! begins anew with that.
 
 use super::{Pipeline, za_path};
-use crate::hidden::z_buffer::surfaces;
+use crate::hidden::z_buffer::all_surfaces;
 use crate::layers::piece::pixels_of;
 use crate::layers::unit::weight;
 use crate::layers::{Setting, charge};
@@ -40,7 +40,7 @@ impl Pipeline {
             return;
         }
         if clear.colour.is_none() {
-            if clear.depth.is_none() || !self.scene.waits_in(&area) {
+            if (clear.depth.is_none() && clear.stencil.is_none()) || !self.scene.waits_in(&area) {
                 return;
             }
             let composed = self.compose_in_midst(memory, target, &area, account, stop);
@@ -102,21 +102,23 @@ impl Pipeline {
             colour_pitch: target.colour.pitch as usize / 4,
             depth_pitch: target.depth.map_or(0, |depth| depth.pitch as usize / 4),
             area: pixels_of(area),
+            stencil_pitch: target.stencil.map_or(0, |plane| plane.pitch as usize),
         };
         if target.hidden_surface == HiddenSurface::Za {
             let touched = self.layers.touched(&setting, &self.scene);
             za_path::settle_places(memory, &touched, account);
         }
-        let (colours, depths) = if target.is_sorted() {
-            let (colours, depths, pitch) = self.sorted.picture(memory.drawing(), target);
+        let (colours, depths, values) = if target.is_sorted() {
+            let (colours, depths, values, pitch) = self.sorted.picture(memory.drawing(), target);
             setting.depth_pitch = pitch;
-            (colours, depths)
+            (colours, depths, values)
         } else {
-            surfaces(memory.drawing(), target)
+            all_surfaces(memory.drawing(), target)
         };
         let worth = self.level.is_some() && weight(&self.scene, &setting) >= PIXELS;
         let pool = self.workers.pool_for(self.threads, worth);
-        let (counts, stopped) = self.layers.compose(&setting, &self.scene, self.level, pool, colours, depths, stop);
+        let (counts, stopped) =
+            self.layers.compose(&setting, &self.scene, self.level, pool, colours, depths, values, stop);
         charge(&counts, account);
         stopped
     }

@@ -10,6 +10,7 @@
 pub mod bands;
 mod layers_path;
 mod shading_path;
+mod shadow_path;
 mod sorted;
 mod subpixel_path;
 mod workers;
@@ -21,11 +22,12 @@ use crate::geometry::assembly::{Assembler, GeometryCounts, List, Widths};
 use crate::geometry::fetch::{Fetch, VertexLight};
 use crate::geometry::transform::Transform;
 use crate::hidden::held::HeldShading;
+use crate::hidden::stencil;
 use crate::hidden::systolic::Waves;
-use crate::hidden::z_buffer::band::{DrawShading, Setting};
+use crate::hidden::z_buffer::band::{DrawShading, Setting, StencilSetting};
 use crate::hidden::z_buffer::tile::TILE;
 use crate::hidden::z_buffer::uniform::Uniform;
-use crate::hidden::z_buffer::{self, DepthTest, specification, surfaces};
+use crate::hidden::z_buffer::{self, DepthTest, all_surfaces, specification};
 use crate::hidden::za::{self, ZaDraw};
 use crate::memory::VideoMemory;
 use crate::memory::areas::whole;
@@ -50,7 +52,7 @@ use workers::{SHARE, Wanted, Workers};
 use zga_abi::format::{Fidelity, HiddenSurface, Topology};
 use zga_abi::{Counter, Effects};
 use zga_firmware::Stopped;
-use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Target};
+use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Shadow, Target};
 
 /// Most host threads.
 const MAX_THREADS: usize = 256;
@@ -202,13 +204,15 @@ impl Pipeline {
         self.uniform = None;
     }
 
-    /// Ends the scene; a path that holds it back draws it now. `stop` is asked with the clocks that takes.
+    /// Ends the scene; a path that holds it back draws it now, then pixels in `shadow` are darkened, then layers composed.
+    /// `stop` is asked with the clocks that takes.
     ///
     /// # Errors
     /// [`Stopped`] as `stop` says; what was drawn until then stays.
     pub fn end_scene(
         &mut self,
         memory: &mut VideoMemory,
+        shadow: Option<&Shadow>,
         account: &mut Account,
         stop: &dyn Fn(Clocks) -> Option<Stopped>,
     ) -> Result<(), Stopped> {
@@ -223,6 +227,9 @@ impl Pipeline {
                 self.sorted.end(memory.drawing(), &target, self.level, layers, account, stop)
             }
         };
+        if let (Some(shadow), Ok(())) = (shadow, drawn) {
+            shadow_path::darken(memory, &target, shadow, account);
+        }
         let spent = account.total().0 - begun.0;
         let stop = |clocks: Clocks| stop(Clocks(spent + clocks.0));
         let resolved = drawn
@@ -349,13 +356,25 @@ impl Pipeline {
         }
     }
 
+    /// Stencil value of a pixel as the path has it; 0 without any.
+    fn stencil_at(&mut self, memory: &VideoMemory, x: u32, y: u32) -> u8 {
+        let inside = |t: &Target| t.stencil.is_some() && x < t.colour.width && y < t.colour.height;
+        match self.target.filter(inside) {
+            None => 0,
+            Some(target) if target.is_sorted() => self.sorted.values_at(memory.words(), &target, x, y).1,
+            Some(target) => stencil::value_at(memory.words(), &target, x, y),
+        }
+    }
+
     /// Depth of a pixel as the path has it; 0 without any.
     pub fn depth_at(&mut self, memory: &VideoMemory, x: u32, y: u32) -> u32 {
         let Some(target) = self.target.filter(|t| t.has_depth() && x < t.colour.width && y < t.colour.height) else {
             return 0;
         };
         match target.hidden_surface {
-            HiddenSurface::Systolic | HiddenSurface::Tile => self.sorted.depth_at(memory.words(), &target, x, y) as u32,
+            HiddenSurface::Systolic | HiddenSurface::Tile => {
+                self.sorted.values_at(memory.words(), &target, x, y).0 as u32
+            }
             HiddenSurface::ZBuffer | HiddenSurface::Za => {
                 let word = target.depth.map(|depth| (depth.base / 4 + y * (depth.pitch / 4) + x) as usize);
                 let stored = word.and_then(|word| memory.words().get(word)).copied().unwrap_or(0);
@@ -411,7 +430,8 @@ impl Pipeline {
             charge_light(light.as_ref(), vertices, account);
         }
         let holes = shading.as_ref().is_some_and(|shading| shading.punch_through().is_some());
-        let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity, holes));
+        let fragmentwise = holes || setting.stencil.is_some();
+        let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity, fragmentwise));
         let mut first = 0;
         while first < primitives {
             if self.scene.full() {
@@ -466,7 +486,8 @@ impl Pipeline {
                 None => {
                     if let Some(probe) = probe.as_deref_mut() {
                         let stored = self.depth_at(memory, probe.x, probe.y) as i32;
-                        probe.follow(&setting, state.depth_function, state.tag, &self.list.shapes, stored);
+                        let held = (stored, self.stencil_at(memory, probe.x, probe.y));
+                        probe.follow(&setting, state.depth_function, state.tag, &self.list.shapes, held);
                     }
                     self.draw_list(memory, &target, &setting, &path, account)?;
                 }
@@ -569,14 +590,14 @@ impl Pipeline {
         let shapes = self.list.shapes.iter().map(|(shape, number)| (shape, *number));
         match path {
             Path::ZBuffer => {
-                let (colour, depth) = surfaces(memory.drawing(), target);
-                let counts = specification::draw(setting, shapes, colour, depth);
+                let (colour, depth, stencil) = all_surfaces(memory.drawing(), target);
+                let counts = specification::draw_noting(setting, shapes, colour, depth, stencil, &mut Sight::none());
                 z_buffer::charge(&counts, setting, account);
             }
             Path::Za(draw) => {
                 let (parts, areas) = memory.parts();
-                let (colour, depth) = surfaces(parts.video, target);
-                let mut surfaces = za::Surfaces { colour, depth, words: &mut parts.za[areas.words()] };
+                let (colour, depth, stencil) = all_surfaces(parts.video, target);
+                let mut surfaces = za::Surfaces { colour, depth, words: &mut parts.za[areas.words()], stencil };
                 let counts = match target.fidelity {
                     Fidelity::Functional => za::specification::draw(draw, shapes, &mut surfaces),
                     Fidelity::Clocked => za::clocked::draw(draw, shapes, &mut surfaces),
@@ -592,9 +613,10 @@ impl Pipeline {
             Path::Sorted { held: false } => {
                 let setting = Setting { depth_pitch: Sorted::depth_pitch(target), ..setting.clone() };
                 self.sorted.note(target, setting.scissor, &self.list);
-                let Surfaces { colour, depth, mut sight, .. } =
+                let Surfaces { colour, depth, stencil, mut sight, .. } =
                     self.sorted.planes(memory.drawing(), target, &setting, 0);
-                let counts = specification::draw_noting(&setting, shapes, colour.rows, depth.rows, &mut sight);
+                let (colour, depth, stencil) = (colour.rows, depth.rows, stencil.rows);
+                let counts = specification::draw_noting(&setting, shapes, colour, depth, stencil, &mut sight);
                 self.sorted.add(&counts, &setting);
             }
         }
@@ -614,11 +636,11 @@ enum Path {
 
 impl Path {
     /// Whether primitives are drawn from bins where the host can: never where a unit is to be stepped. The Za path has no
-    /// fast way for `holes` of a texture.
-    fn is_fast(&self, fidelity: Fidelity, holes: bool) -> bool {
+    /// fast way where more is asked of a fragment than its depth: for holes of a texture, for a stencil test.
+    fn is_fast(&self, fidelity: Fidelity, fragmentwise: bool) -> bool {
         match self {
             Path::ZBuffer => true,
-            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast() && !holes,
+            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast() && !fragmentwise,
             Path::Sorted { held } => !held,
         }
     }
@@ -637,13 +659,14 @@ impl Path {
 
 /// The planes of a target from band `first` on.
 fn planes<'m>(memory: &'m mut [u32], target: &Target, setting: &Setting, first: usize) -> Surfaces<'m> {
-    let (colour, depth) = surfaces(memory, target);
+    let (colour, depth, stencil) = all_surfaces(memory, target);
     // A block that is cleared in Za RAM only gets its depths with the first pixel drawn to it, tested or not.
     let wanted = setting.test.is_some() || target.hidden_surface == HiddenSurface::Za;
     let depth = if wanted { Plane::new(depth, setting.depth_pitch, first) } else { Plane::none() };
     Surfaces {
         colour: Plane::new(colour, setting.colour_pitch, first),
         depth,
+        stencil: setting.stencil.map_or(Plane::none(), |setting| Plane::new(stencil, setting.pitch, first)),
         words: Plane::none(),
         sight: Sight::none(),
     }
@@ -663,6 +686,10 @@ fn setting(target: &Target, state: &DrawState) -> Setting {
             Interpolation::Affine
         },
         shading: None,
+        stencil: match (state.stencil, target.stencil) {
+            (Some(rule), Some(plane)) => Some(StencilSetting { rule, pitch: plane.pitch as usize }),
+            _ => None,
+        },
         cuts_segments: target.hidden_surface == HiddenSurface::Systolic,
         scissor: state.scissor,
         width: target.colour.width,
@@ -717,6 +744,7 @@ mod tests {
             format: DepthFormat::default(),
             interpolation: Interpolation::Flat,
             shading: None,
+            stencil: None,
             cuts_segments: false,
             scissor: Rectangle { x: 0, y: 0, right: 64, bottom: 64 },
             width: 64,

@@ -7,6 +7,7 @@ use super::{Pipeline, sorted};
 use crate::geometry::GeometryRegisters;
 use crate::geometry::fetch::VertexLight;
 use crate::geometry::transform::Transform;
+use crate::hidden::stencil;
 use crate::memory::VideoMemory;
 use crate::probe::account::{Account, Clocks};
 use crate::shading::fog::FogMixer;
@@ -72,6 +73,9 @@ pub(super) fn drawn_to(memory: &mut VideoMemory, target: &Target) {
     if let Some(depth) = target.depth {
         let bytes = u64::from(depth.pitch) * u64::from(target.colour.height);
         memory.changed(words(u64::from(depth.base)..u64::from(depth.base) + bytes));
+    }
+    if target.stencil.is_some() {
+        memory.changed(stencil::words(target));
     }
 }
 

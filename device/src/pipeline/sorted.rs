@@ -13,14 +13,15 @@ use super::bands::{Plane, Sight, Surfaces};
 use crate::geometry::assembly::{List, Shape, Sink};
 use crate::geometry::plane::below;
 use crate::hidden::held::{Background, Depths, Held, HeldDraw, HeldShading, Item};
+use crate::hidden::stencil::{self, StencilCounts, StencilRows};
 use crate::hidden::systolic::{self, SystolicCounts, Waves};
 use crate::hidden::tile::Grid;
 use crate::hidden::tile::closed_form::{PixelCounts, Sorts, pixels_of_tile};
 use crate::hidden::tile::{self, scene};
 use crate::hidden::z_buffer::band::Setting;
-use crate::hidden::z_buffer::specification::meets;
+use crate::hidden::z_buffer::specification::{colour_plane, meets};
 use crate::hidden::z_buffer::tile::TileCounts;
-use crate::hidden::z_buffer::{fill_colour, fill_depth, surfaces};
+use crate::hidden::z_buffer::{all_surfaces, fill_colour, fill_depth, surfaces};
 use crate::probe::account::{Account, Clocks};
 use crate::shading::pixel::ShadingCounts;
 use fearless_simd::Level;
@@ -60,10 +61,12 @@ pub(super) struct Sorted {
     spans: u64,
     /// What looking for holes has cost.
     looked_up: ShadingCounts,
+    /// Events of stencil tests.
+    stencil: StencilCounts,
     /// The scene, where it is held back.
     held: Held,
-    /// Depth at the probed pixel of a scene that is held back, after so many of its items.
-    probed: Option<([u32; 2], usize, i32)>,
+    /// Depth and stencil value at the probed pixel of a scene that is held back, after so many of its items.
+    probed: Option<([u32; 2], usize, (i32, u8))>,
     /// What is to be recorded of the next scene that the clocked array draws.
     pub(super) waves: Option<Waves>,
     /// The last waveform recorded.
@@ -102,6 +105,7 @@ impl Sorted {
         self.carried = false;
         self.spans = 0;
         self.looked_up = ShadingCounts::default();
+        self.stencil = StencilCounts::default();
         self.background = Background::default();
         self.held.reset();
         self.probed = None;
@@ -152,13 +156,16 @@ impl Sorted {
             self.before_draw(target);
         }
         if is_held(target) {
-            self.held.clear(background, area, clear.colour, depth);
+            self.held.clear(background, area, clear.colour, depth, clear.stencil);
             return;
         }
         if background {
-            self.background.add(clear.colour, depth);
+            self.background.add(clear.colour, depth, clear.stencil);
         } else {
             self.draw_rectangle(target, &area, clear.colour.is_some());
+        }
+        if let Some(value) = clear.stencil {
+            stencil::fill(memory, target, &area, value);
         }
         let pitches = Pitches::of(target);
         let (colours, depths) = surfaces(memory, target);
@@ -212,9 +219,10 @@ impl Sorted {
     ) -> Surfaces<'m> {
         let pitches = Pitches::of(target);
         let cost = setting.shading.as_ref().map_or(0, |shading| self.price(target, shading.pixel.cost()));
-        let (colours, depths) = surfaces(memory, target);
+        let (colours, depths, values) = all_surfaces(memory, target);
         let depths = if target.depth.is_some() { depths } else { &mut self.depth[..] };
         Surfaces {
+            stencil: setting.stencil.map_or(Plane::none(), |setting| Plane::new(values, setting.pitch, first)),
             colour: Plane::new(colours, setting.colour_pitch, first),
             depth: if setting.test.is_some() { Plane::new(depths, pitches.depth, first) } else { Plane::none() },
             words: Plane::none(),
@@ -273,6 +281,7 @@ impl Sorted {
     /// Adds events of a functional draw.
     pub(super) fn add(&mut self, counts: &TileCounts, setting: &Setting) {
         self.spans += counts.spans;
+        self.stencil = self.stencil.plus(counts.stencil);
         self.looked_up = self.looked_up.plus(setting.looked_up(counts.covered, counts.holes));
     }
 
@@ -280,7 +289,8 @@ impl Sorted {
     pub(super) fn hold(&mut self, target: &Target, setting: &Setting, list: &List) {
         self.before_draw(target);
         let (test, interpolation, scissor) = (setting.test, setting.interpolation, setting.scissor);
-        let draw = HeldDraw { test, interpolation, shading: None, scissor };
+        let stencil = setting.stencil.map(|setting| setting.rule);
+        let draw = HeldDraw { test, interpolation, shading: None, scissor, stencil };
         self.held.add(&draw, list, |number| HeldShading::of(setting, number));
     }
 
@@ -289,8 +299,9 @@ impl Sorted {
         self.held.full()
     }
 
-    /// Depth at pixel (`x`, `y`) as it stands.
-    pub(super) fn depth_at(&mut self, memory: &[u32], target: &Target, x: u32, y: u32) -> i32 {
+    /// Depth and stencil value at pixel (`x`, `y`) as they stand.
+    pub(super) fn values_at(&mut self, memory: &[u32], target: &Target, x: u32, y: u32) -> (i32, u8) {
+        let value = stencil::value_at(memory, target, x, y);
         let pitch = Pitches::of(target).depth;
         let at = y as usize * pitch + x as usize;
         let surface = target.depth.map(|depth| memory.get(depth.base as usize / 4 + at).copied().unwrap_or(0) as i32);
@@ -298,18 +309,20 @@ impl Sorted {
         if !is_held(target) {
             let known = self.drawn || self.carried || self.background.depth.is_some();
             let own = if known { self.depth.get(at).copied() } else { None };
-            return surface.or(own).unwrap_or(maximum);
+            return (surface.or(own).unwrap_or(maximum), value);
         }
         let surface = surface.or_else(|| if self.carried { self.depth.get(at).copied() } else { None });
-        let (pixel, mut done, mut depth) = self.probed.unwrap_or(([x, y], 0, 0));
+        let (pixel, mut done, mut values) = self.probed.unwrap_or(([x, y], 0, (0, 0)));
         if done == 0 || pixel != [x, y] {
-            (done, depth) = (0, self.held.background.depth.or(surface).unwrap_or(maximum));
+            let background = &self.held.background;
+            let depth = background.depth.or(surface).unwrap_or(maximum);
+            (done, values) = (0, (depth, background.stencil.unwrap_or(value)));
         }
         for item in &self.held.items[done..] {
-            depth = after(item, &self.held.draws, target, [x as i32, y as i32], depth);
+            values = after(item, &self.held.draws, target, [x as i32, y as i32], values);
         }
-        self.probed = Some(([x, y], self.held.items.len(), depth));
-        depth
+        self.probed = Some(([x, y], self.held.items.len(), values));
+        values
     }
 
     /// The scene has begun in earnest.
@@ -336,15 +349,15 @@ impl Sorted {
         drawn
     }
 
-    /// Frame buffer and depths of what is drawn, for layers: elements from a row of depths to the next.
+    /// Frame buffer, depths and stencil values of what is drawn, for layers: elements from a row of depths to the next.
     pub(super) fn picture<'m>(
         &'m mut self,
         memory: &'m mut [u32],
         target: &Target,
-    ) -> (&'m mut [u32], &'m mut [i32], usize) {
-        let (colours, depths) = surfaces(memory, target);
+    ) -> (&'m mut [u32], &'m mut [i32], &'m mut [u8], usize) {
+        let (colours, depths, values) = all_surfaces(memory, target);
         let depths = if target.depth.is_some() { depths } else { &mut self.depth[..] };
-        (colours, depths, Pitches::of(target).depth)
+        (colours, depths, values, Pitches::of(target).depth)
     }
 
     /// The scene ends: a scene that was held back is drawn, and its events are charged. With `layers` somebody asks for
@@ -364,17 +377,20 @@ impl Sorted {
         if !self.used {
             return Ok(());
         }
-        let (colours, depths) = surfaces(memory, target);
-        let depths = if target.depth.is_none() && is_held(target) && (layers || self.carried) {
+        let (colours, depths, values) = all_surfaces(memory, target);
+        let mut depths = if target.depth.is_none() && is_held(target) && (layers || self.carried) {
             let Pitches { depth: pitch, .. } = Pitches::of(target);
             self.depth.resize(pitch * target.colour.height as usize, 0);
             if !self.carried {
                 self.depth.fill(target.depth_format.maximum() as i32);
             }
-            Depths { rows: &mut self.depth, pitch }
+            Depths { rows: &mut self.depth, pitch, stencil: StencilRows::none() }
         } else {
             Depths::of(target, depths)
         };
+        if let Some(plane) = target.stencil.filter(|_| is_held(target) && self.held.asks_for_stencil()) {
+            depths.stencil = StencilRows { rows: values, pitch: plane.pitch as usize };
+        }
         match (target.hidden_surface, is_held(target)) {
             (HiddenSurface::Systolic, true) => {
                 let mut waves = self.waves.take();
@@ -392,7 +408,8 @@ impl Sorted {
             }
             (_, false) => {
                 let (grid, pitch) = (Grid::new(target), Pitches::of(target).bits);
-                let pixels = PixelCounts { spans: self.spans, shaded: ones(&self.late), shading: self.shading() };
+                let (spans, shaded, shading) = (self.spans, ones(&self.late), self.shading());
+                let pixels = PixelCounts { spans, shaded, shading, stencil: self.stencil };
                 let won = |column, row| pixels_of_tile(&self.winner, pitch, &grid.pixels(column, row));
                 if let Some(sorts) = &self.sorts {
                     tile::charge(&sorts.finish(target, &self.background, pixels, won), account);
@@ -416,6 +433,7 @@ impl Sorted {
             colours: if background.colour.is_some() { pixels } else { ones(&self.winner) },
             shaded: ones(&self.late),
             shading: self.shading(),
+            stencil: self.stencil,
         }
     }
 }
@@ -432,22 +450,36 @@ fn chunk_mask(chunk: usize, area: &Rectangle) -> u16 {
     below(area.right) & !below(area.x)
 }
 
-/// Depth of pixel (`x`, `y`) after an item, `depth` before it.
-fn after(item: &Item, draws: &[HeldDraw], target: &Target, [x, y]: [i32; 2], depth: i32) -> i32 {
+/// Depth and stencil value of pixel (`x`, `y`) after an item, `depth` and `value` before it.
+fn after(
+    item: &Item,
+    draws: &[HeldDraw],
+    target: &Target,
+    [x, y]: [i32; 2],
+    (depth, mut value): (i32, u8),
+) -> (i32, u8) {
     let inside = |area: &Rectangle| {
         (area.x as i32..area.right as i32).contains(&x) && (area.y as i32..area.bottom as i32).contains(&y)
     };
     match item {
-        Item::Clear { area, depth: Some(cleared), .. } if inside(area) => *cleared,
-        Item::Clear { .. } => depth,
+        Item::Clear { area, depth: cleared, stencil, .. } if inside(area) => {
+            (cleared.unwrap_or(depth), stencil.unwrap_or(value))
+        }
+        Item::Clear { .. } => (depth, value),
         Item::Primitive(shape, draw) => {
             let draw = &draws[*draw as usize];
-            let Some(test) = draw.test.filter(|test| test.write && inside(&draw.scissor) && meets(shape, x, y)) else {
-                return depth;
-            };
+            let decides = draw.test.is_some_and(|test| test.write) || draw.stencil.is_some();
+            if !decides || !inside(&draw.scissor) || !meets(shape, x, y) {
+                return (depth, value);
+            }
+            if draw.has_holes() && colour_plane(shape, &draw.shade()).is_hole(x, y) {
+                return (depth, value);
+            }
             let plane = shape.plane(target.depth_format);
             let z = plane.stored(plane.value(x, y), below(target.depth_format));
-            if test.passes(z, depth) { z } else { depth }
+            let passes = || draw.test.is_none_or(|test| test.passes(z, depth));
+            let drawn = draw.stencil_rule(shape).decide(&mut value, &mut StencilCounts::default(), passes);
+            (if drawn && draw.test.is_some_and(|test| test.write) { z } else { depth }, value)
         }
     }
 }

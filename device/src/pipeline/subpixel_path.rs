@@ -62,7 +62,7 @@ impl Pipeline {
         clear: &Clear,
         account: &mut Account,
     ) {
-        if target.subpixel.is_none() {
+        if target.subpixel.is_none() || (clear.colour.is_none() && clear.depth.is_none()) {
             return;
         }
         let is_whole = clear.area == whole(&target.colour);

@@ -1,5 +1,6 @@
 //! The Za path's way through the pipeline: clears and draws of the scene's frame.
 
+use crate::hidden::stencil;
 use crate::hidden::z_buffer::band::Setting;
 use crate::hidden::za::{self, Background, ZaDraw};
 use crate::memory::VideoMemory;
@@ -33,6 +34,12 @@ pub(super) fn clear(memory: &mut VideoMemory, target: &Target, clear: &Clear, ac
     let area = clear.area;
     if area.x >= area.right || area.y >= area.bottom {
         return;
+    }
+    if let Some(value) = clear.stencil {
+        account.charge(Counter::CyclesZa, stencil::fill(memory.drawing(), target, &area, value));
+        if clear.colour.is_none() && clear.depth.is_none() {
+            return;
+        }
     }
     let (mut parts, areas) = memory.parts();
     let all = clear.colour.is_some() && (clear.depth.is_some() || target.depth.is_none());

@@ -57,6 +57,9 @@ impl Probe {
         let draws = self.draws;
         let Some(watch) = self.aim(registers, draws) else { return };
         let (x, y, area) = (watch.x, watch.y, clear.area);
+        if clear.colour.is_none() && clear.depth.is_none() {
+            return;
+        }
         if (area.x..area.right).contains(&x) && (area.y..area.bottom).contains(&y) {
             let before = depth(x, y);
             watch.clear(before, clear.depth.unwrap_or(before), clear.colour.unwrap_or(0));

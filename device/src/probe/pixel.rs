@@ -7,6 +7,7 @@
 
 use crate::geometry::assembly::Shape;
 use crate::geometry::plane::below;
+use crate::hidden::stencil::{StencilCounts, Stencilled};
 use crate::hidden::z_buffer::band::Setting;
 use crate::hidden::z_buffer::specification::{colour_plane, meets};
 use zga_abi::format::DepthFunction;
@@ -47,15 +48,16 @@ impl PixelProbe {
         });
     }
 
-    /// Follows primitives of a draw, in order; `stored` is the pixel's depth before them.
+    /// Follows primitives of a draw, in order; the pixel's depth and stencil value before them are `held`.
     pub fn follow(
         &mut self,
         setting: &Setting,
         function: DepthFunction,
         tag: u32,
         shapes: &[(Shape, u32)],
-        mut stored: i32,
+        held: (i32, u8),
     ) {
+        let (mut stored, mut value) = held;
         let (x, y) = (self.x as i32, self.y as i32);
         let area = setting.scissor;
         if !(area.x..area.right).contains(&self.x) || !(area.y..area.bottom).contains(&self.y) {
@@ -70,7 +72,15 @@ impl PixelProbe {
             let plane = shape.plane(setting.format);
             let depth = plane.stored(plane.value(x, y), below(setting.format));
             let colours = colour_plane(shape, &setting.shade(*primitive));
-            let passed = setting.test.is_none_or(|test| test.passes(depth, stored)) && !colours.is_hole(x, y);
+            let passes = || setting.test.is_none_or(|test| test.passes(depth, stored));
+            let passed = !colours.is_hole(x, y)
+                && match &setting.stencil {
+                    None => passes(),
+                    Some(stencil) => {
+                        let stencilled = Stencilled::of(stencil.rule, shape);
+                        stencilled.decide(&mut value, &mut StencilCounts::default(), passes)
+                    }
+                };
             let written = passed && setting.test.is_some_and(|test| test.write);
             self.records.push(ProbeRecord {
                 primitive: *primitive,

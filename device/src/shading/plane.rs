@@ -115,6 +115,13 @@ impl ColourSource {
         self.position[0]
     }
 
+    /// Whether the vertices run counter-clockwise on the screen, where y goes down.
+    #[must_use]
+    pub fn runs_counter_clockwise(&self) -> bool {
+        let [a, b, c] = self.position.map(|place| place.map(i64::from));
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) < 0
+    }
+
     /// The colour of a flat primitive: its first vertex's.
     #[must_use]
     pub fn flat(&self) -> u32 {

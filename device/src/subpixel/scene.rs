@@ -18,7 +18,7 @@ use crate::shading::pixel::AlphaRule;
 use crate::shading::plane::{Interpolation, Shade};
 use zga_abi::Effects;
 use zga_abi::format::{BlendMode, DepthFunction};
-use zga_firmware::checked::{Clear, DrawState, Rectangle};
+use zga_firmware::checked::{Clear, DrawState, Rectangle, StencilTest};
 
 /// Most primitives and clears of a scene: 68 MiB, and less for the draws.
 pub const ITEM_LIMIT: usize = 1 << 20;
@@ -66,6 +66,8 @@ pub struct ItemDraw {
     pub mode: BlendMode,
     /// Object tag.
     pub tag: u32,
+    /// Stencil test of layers without a grid, which change no stencil value.
+    pub stencil: Option<StencilTest>,
     /// Pixels that may change, inside the target.
     pub scissor: Rectangle,
     /// Of a clear: RGBA to be written.
@@ -125,7 +127,18 @@ impl ItemDraw {
 
     /// A draw that is opaque and has no tag.
     fn new(test: Option<DepthTest>, interpolation: Interpolation, mode: BlendMode, scissor: Rectangle) -> ItemDraw {
-        ItemDraw { test, interpolation, shading: None, blend: false, mode, tag: 0, scissor, colour: None, depth: None }
+        ItemDraw {
+            test,
+            interpolation,
+            shading: None,
+            blend: false,
+            mode,
+            tag: 0,
+            stencil: None,
+            scissor,
+            colour: None,
+            depth: None,
+        }
     }
 }
 
@@ -266,12 +279,14 @@ impl Scene {
         alphas: AlphaRule,
     ) -> Option<Taken<'_>> {
         let blend = state.effects.contains(Effects::BLEND);
-        // What is opaque and asks for no depth lies over the layers that came before it.
-        let covers = test.is_none() && (blend || !self.items.is_empty());
+        // What is opaque and asks for no depth lies over the layers that came before it. Where a stencil test let it through
+        // is not known any more when these are composed: with one it takes none of them back.
+        let stencil = state.stencil.map(|stencil| stencil.test);
+        let covers = test.is_none() && stencil.is_none() && (blend || !self.items.is_empty());
         if !blend && !covers {
             return None;
         }
-        let draw = ItemDraw { blend, ..ItemDraw::new(test, interpolation, state.blend, state.scissor) };
+        let draw = ItemDraw { blend, stencil, ..ItemDraw::new(test, interpolation, state.blend, state.scissor) };
         let draw = self.place(draw);
         let translucent = blend.then_some(Translucency { interpolation, mode: state.blend, alphas });
         let without_grid = Some(WithoutGrid { covers });

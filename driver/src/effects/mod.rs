@@ -1,4 +1,4 @@
-//! Effects of a draw beside depth and colour: texture, holes, light, fog, blending.
+//! Effects of a draw beside depth and colour: texture, holes, light, fog, blending, stencil.
 //!
 //! Duties: keeps what the user has set, and wants the registers of an effect where a draw calls for it. Inputs from:
 //! the user. Outputs to: every draw. An effect that a draw does not call for sends nothing.
@@ -11,10 +11,12 @@
 //! | light | draws whose vertices have normals, while there are lights or an ambient light |
 //! | fog | every draw, while it is set |
 //! | blend | every draw, while it is set |
+//! | stencil | every draw, while it is set |
 
 mod fog;
 mod light;
 mod mip_map;
+mod stencil;
 mod texels;
 mod texture;
 
@@ -29,6 +31,7 @@ use crate::{Driver, DriverError};
 pub use fog::{Fog, FogCurve};
 use light::LightState;
 pub use light::{Light, LightSource, Material};
+pub use stencil::{Shadow, Stencil, StencilSide};
 pub(crate) use texture::TextureRecord;
 use texture::TextureSetting;
 pub use texture::{Texture, TextureOptions, TextureState};
@@ -65,11 +68,21 @@ pub(crate) struct EffectState {
     blend: Option<BlendMode>,
     fog: Option<Fog>,
     light: LightState,
+    stencil: Option<Stencil>,
+    shadow: Option<Shadow>,
 }
 
 impl EffectState {
     pub fn new() -> EffectState {
-        EffectState { texture: None, punch_through: None, blend: None, fog: None, light: LightState::new() }
+        EffectState {
+            texture: None,
+            punch_through: None,
+            blend: None,
+            fog: None,
+            light: LightState::new(),
+            stencil: None,
+            shadow: None,
+        }
     }
 
     /// Lights stand elsewhere in eye space.
@@ -141,6 +154,10 @@ impl<B: Bus> Driver<B> {
         if let Some(mode) = self.state.effects.blend {
             self.registers.want(Reg::BlendControl, &[mode.code()]);
             effects |= Effects::BLEND;
+        }
+        if let Some(stencil) = self.state.effects.stencil {
+            self.want_stencil(&stencil);
+            effects |= Effects::STENCIL;
         }
         effects.set(Effects::LIGHT, light.is_some());
         // Nothing varies over a point.

@@ -135,6 +135,16 @@ fn draw_state<H: Hardware>(hardware: &H, target: &Target) -> Result<DrawState, F
     effects_claim.require(target.has_depth() || !called.contains(Effects::DEPTH))?;
     effects_claim.require(target.subpixel.is_some() || !called.contains(Effects::ANTI_ALIAS))?;
 
+    let stencil = effects::stencil(hardware, target, called)?;
+    // Without colours nobody asks what they would have been; a texture can have holes all the same.
+    let mut called = called;
+    if stencil.is_some_and(|stencil| stencil.colour_off) {
+        called.remove(Effects::GOURAUD | Effects::LIGHT | Effects::FOG);
+        if !called.contains(Effects::PUNCH_THROUGH) {
+            called.remove(Effects::TEXTURE | Effects::MIP_MAP);
+        }
+    }
+
     let control = registers::sample(hardware, Reg::DepthControl);
     Ok(DrawState {
         effects: called,
@@ -150,6 +160,7 @@ fn draw_state<H: Hardware>(hardware: &H, target: &Target) -> Result<DrawState, F
         light: effects::light(hardware, called)?,
         fog: effects::fog(hardware, called)?,
         blend: effects::blend(hardware, called)?,
+        stencil,
     })
 }
 

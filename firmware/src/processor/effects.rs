@@ -1,4 +1,4 @@
-//! Registers of the effects that a draw calls for: texture, holes, light, fog, blending.
+//! Registers of the effects that a draw calls for: texture, holes, light, fog, blending, stencil; and of the shadow bit.
 //!
 //! Each group is looked at only where its effect is called: a draw that does not call for fog does not care what the
 //! fog registers hold.
@@ -6,11 +6,13 @@
 use super::claim::Claim;
 use super::memory::{CHUNK, LARGEST_SIDE, VideoMemory};
 use super::registers::{pair, sample, size};
-use crate::checked::{Fog, Lighting, Texture};
+use crate::checked::{Fog, Lighting, Shadow, Stencil, StencilOperations, StencilTest, Target, Texture};
 use crate::hardware::Hardware;
-use zga_abi::format::{BlendMode, FogFunction, TextureFilter, TextureFormat, TextureFunction};
+use zga_abi::format::{
+    BlendMode, DepthFunction, FogFunction, StencilOperation, TextureFilter, TextureFormat, TextureFunction,
+};
 use zga_abi::light::{LIGHT_BYTES, MOST_LIGHTS};
-use zga_abi::{Effects, Fault, Reg};
+use zga_abi::{Effects, Fault, FaultCode, Reg};
 
 /// Most levels of a texture: 16384 texels are halved 14 times.
 const MOST_LEVELS: u32 = 15;
@@ -194,4 +196,53 @@ pub(super) fn blend<H: Hardware>(hardware: &H, effects: Effects) -> Result<Blend
     } else {
         Ok(BlendMode::Alpha)
     }
+}
+
+/// The stencil test of a draw with these effects.
+///
+/// Refused: without a stencil plane; with a grid, whose samples share one stencil value; with BLEND where it changes a
+/// value or draws no colour, since what is translucent is tested when the opaque picture is done.
+pub(super) fn stencil<H: Hardware>(hardware: &H, target: &Target, effects: Effects) -> Result<Option<Stencil>, Fault> {
+    if !effects.contains(Effects::STENCIL) {
+        return Ok(None);
+    }
+    let called = sample(hardware, Reg::Effects);
+    called.require(target.stencil.is_some())?;
+    if target.subpixel.is_some() {
+        return Err(called.refuse(FaultCode::Unsupported));
+    }
+    let control = sample(hardware, Reg::StencilControl);
+    let value = hardware.register(Reg::StencilValue, 0);
+    let operation = |low: u32| control.mean(StencilOperation::from_code(control.value >> low & 7));
+    let operations = |low: u32| {
+        let (fail, depth_fail, pass) = (operation(low)?, operation(low + 4)?, operation(low + 8)?);
+        Ok(StencilOperations { fail, depth_fail, pass })
+    };
+    let stencil = Stencil {
+        test: stencil_test(control, control.value, value, value >> 8)?,
+        write_mask: (value >> 16) as u8,
+        front: operations(8)?,
+        back: operations(20)?,
+        colour_off: control.value >> 4 & 1 == 1,
+    };
+    if effects.contains(Effects::BLEND) && (stencil.colour_off || stencil.changes_values()) {
+        return Err(control.refuse(FaultCode::Unsupported));
+    }
+    Ok(Some(stencil))
+}
+
+/// A stencil test whose function is in bits 2:0; reference and mask are the low bits of their words.
+fn stencil_test(claim: Claim, function: u32, reference: u32, mask: u32) -> Result<StencilTest, Fault> {
+    let function = claim.mean(DepthFunction::from_code(function & 7))?;
+    Ok(StencilTest { function, reference: reference as u8, read_mask: mask as u8 })
+}
+
+/// The shadow bit; none where it is not enabled.
+pub(super) fn shadow<H: Hardware>(hardware: &H) -> Result<Option<Shadow>, Fault> {
+    let control = sample(hardware, Reg::ShadowControl);
+    if control.value & 1 == 0 {
+        return Ok(None);
+    }
+    let test = stencil_test(control, control.value >> 4, control.value >> 8, control.value >> 16)?;
+    Ok(Some(Shadow { test, intensity: hardware.register(Reg::ShadowIntensity, 0) as u8 }))
 }

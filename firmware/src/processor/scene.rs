@@ -7,18 +7,18 @@
 use super::claim::Claim;
 use super::memory::VideoMemory;
 use super::power::path_unit;
-use super::{Processor, at_header, bad_length, outcome, registers};
-use crate::checked::{Clear, DepthSurface, Surface, Target};
+use super::{Processor, at_header, bad_length, effects, outcome, registers};
+use crate::checked::{Clear, DepthSurface, StencilSurface, Surface, Target};
 use crate::hardware::Hardware;
 use zga_abi::format::HiddenSurface;
-use zga_abi::packet::{CLEAR_COLOUR, CLEAR_DEPTH};
-use zga_abi::{Fault, FaultCode, Reg};
+use zga_abi::packet::{CLEAR_COLOUR, CLEAR_DEPTH, CLEAR_STENCIL, CLEAR_STENCIL_SHIFT};
+use zga_abi::{Effects, Fault, FaultCode, Reg};
 
 /// Bytes of a depth in video memory.
 const DEPTH_BYTES: u32 = 4;
 
 /// The registers that begin scene samples.
-pub(super) const TARGET_REGISTERS: [Reg; 19] = [
+pub(super) const TARGET_REGISTERS: [Reg; 21] = [
     Reg::TargetSize,
     Reg::ColourBase,
     Reg::ColourPitch,
@@ -38,6 +38,8 @@ pub(super) const TARGET_REGISTERS: [Reg; 19] = [
     Reg::SubpixelDepth,
     Reg::SubpixelResolve,
     Reg::SubpixelPool,
+    Reg::StencilBase,
+    Reg::StencilPitch,
 ];
 
 /// A scene that was begun.
@@ -76,6 +78,8 @@ impl Scene {
             subpixel_depth,
             resolve,
             pool,
+            stencil_base,
+            stencil_pitch,
         ] = claims;
         let memory = VideoMemory::of(hardware);
 
@@ -85,6 +89,7 @@ impl Scene {
         let colour = Surface { base: colour_base.value, pitch: colour_pitch.value, width, height, format };
 
         let depth_format = registers::depth_format(depth_format)?;
+        let mut taken = [Some(colour_span), None];
         let depth = if depth_pitch.value == 0 {
             None
         } else {
@@ -92,7 +97,17 @@ impl Scene {
             if span.overlaps(colour_span) {
                 return Err(depth_base.refuse(FaultCode::Overlap));
             }
+            taken[1] = Some(span);
             Some(DepthSurface { base: depth_base.value, pitch: depth_pitch.value })
+        };
+        let stencil = if stencil_pitch.value == 0 {
+            None
+        } else {
+            let span = memory.frame(stencil_base, stencil_pitch, width, height)?;
+            if taken.into_iter().flatten().any(|other| span.overlaps(other)) {
+                return Err(stencil_base.refuse(FaultCode::Overlap));
+            }
+            Some(StencilSurface { base: stencil_base.value, pitch: stencil_pitch.value })
         };
 
         let hidden_surface = registers::hidden_surface(path, hardware.register(Reg::CapabilityPaths, 0))?;
@@ -115,6 +130,7 @@ impl Scene {
             systolic: registers::systolic(systolic),
             tile: registers::tile_size(tile)?,
             subpixel: registers::subpixel(grid, subpixel_depth, resolve, pool)?,
+            stencil,
         };
         Ok(Scene { registers: values, target })
     }
@@ -144,9 +160,12 @@ impl Processor {
 
     /// END_SCENE. The scene is over even when the watchdog stops it.
     pub(super) fn end_scene<H: Hardware>(&mut self, hardware: &mut H, packet: &[u32]) -> Result<(), Fault> {
-        self.scene_target(packet)?;
+        let target = self.scene_target(packet)?;
+        // A scene that calls for no stencil test has no shadows.
+        let called = target.stencil.is_some() && self.power.effects().contains(Effects::STENCIL);
+        let shadow = if called { effects::shadow(hardware)? } else { None };
         self.scene = None;
-        outcome(hardware.end_scene())
+        outcome(hardware.end_scene(shadow.as_ref()))
     }
 
     /// CLEAR: planes, colour, depth. The value of a plane that is not cleared does not matter.
@@ -159,7 +178,13 @@ impl Processor {
         let depth = Claim::word(3, depth);
         let clears = |plane| planes.value & plane != 0;
 
-        planes.require(planes.value & !(CLEAR_COLOUR | CLEAR_DEPTH) == 0)?;
+        // The stencil plane's value stands beside its bit.
+        let mut known = CLEAR_COLOUR | CLEAR_DEPTH;
+        if clears(CLEAR_STENCIL) {
+            known |= CLEAR_STENCIL | (0xFF << CLEAR_STENCIL_SHIFT);
+        }
+        planes.require(planes.value & !known == 0)?;
+        planes.require(target.stencil.is_some() || !clears(CLEAR_STENCIL))?;
         if clears(CLEAR_DEPTH) {
             planes.require(target.has_depth())?;
             depth.require(depth.value <= target.depth_format.maximum())?;
@@ -173,6 +198,7 @@ impl Processor {
         hardware.clear(&Clear {
             colour: clears(CLEAR_COLOUR).then_some(colour),
             depth: clears(CLEAR_DEPTH).then_some(depth.value),
+            stencil: clears(CLEAR_STENCIL).then_some((planes.value >> CLEAR_STENCIL_SHIFT) as u8),
             area: registers::scissor(hardware, target.colour.width, target.colour.height),
         });
         Ok(())

@@ -17,8 +17,8 @@ pub struct ProcessorState {
     pub units_powered: u32,
     /// TARGET_SIZE, COLOUR_BASE, COLOUR_PITCH, COLOUR_FORMAT, DEPTH_BASE, DEPTH_PITCH, DEPTH_FORMAT,
     /// HIDDEN_SURFACE, SUBPIXEL_BITS, FIDELITY, ZA_BLOCK, ZA_PREDICTION, ZA_BASE, SYSTOLIC_VARIANT,
-    /// TILE_SIZE, SUBPIXEL_GRID, SUBPIXEL_DEPTH, SUBPIXEL_RESOLVE and SUBPIXEL_POOL as begin scene sampled
-    /// them; 0 outside a scene.
+    /// TILE_SIZE, SUBPIXEL_GRID, SUBPIXEL_DEPTH, SUBPIXEL_RESOLVE, SUBPIXEL_POOL, STENCIL_BASE
+    /// and STENCIL_PITCH as begin scene sampled them; 0 outside a scene.
     pub target: [u32; TARGET_REGISTERS.len()],
 }
 

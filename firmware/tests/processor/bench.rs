@@ -38,7 +38,22 @@ impl Bench {
         bench
     }
 
+    /// The same with a stencil plane in 0x7000..0x7800.
+    pub fn with_stencil_plane() -> Bench {
+        let mut bench = Bench::with_target();
+        bench.card.set(0x021C, 0x7000);
+        bench.card.set(0x0220, 64);
+        bench
+    }
+
     /// The same inside a scene.
+    pub fn in_scene_with_stencil_plane() -> Bench {
+        let mut bench = Bench::with_stencil_plane();
+        bench.good(0x02, &[]);
+        bench
+    }
+
+    /// With a target inside a scene.
     pub fn in_scene() -> Bench {
         let mut bench = Bench::with_target();
         bench.good(0x02, &[]);

@@ -1,10 +1,12 @@
-//! Registers of the effects that a draw calls for: texture, holes, light, fog, blending.
+//! Registers of the effects that a draw calls for: texture, holes, light, fog, blending, stencil.
 
 use crate::bench::{Bench, TRIANGLE};
 use crate::mock::{Call, MEMORY};
 use zga_abi::FaultCode;
-use zga_abi::format::{BlendMode, FogFunction, TextureFilter, TextureFormat, TextureFunction};
-use zga_firmware::checked::{DrawState, Fog, Lighting, Texture};
+use zga_abi::format::{
+    BlendMode, DepthFunction, FogFunction, StencilOperation, TextureFilter, TextureFormat, TextureFunction,
+};
+use zga_firmware::checked::{DrawState, Fog, Lighting, Stencil, StencilOperations, StencilTest, Texture};
 
 const EFFECTS: u32 = 0x0280;
 const TEXTURE: u32 = 1 << 4;
@@ -13,6 +15,7 @@ const LIGHT: u32 = 1 << 6;
 const FOG: u32 = 1 << 7;
 const BLEND: u32 = 1 << 8;
 const PUNCH_THROUGH: u32 = 1 << 9;
+const STENCIL: u32 = 1 << 11;
 
 const TEXTURE_BASE: u32 = 0x0300;
 const TEXTURE_SIZE: u32 = 0x0304;
@@ -21,6 +24,8 @@ const TEXTURE_OFFSET: u32 = 0x030C;
 const TEXTURE_WINDOW: u32 = 0x0310;
 const PALETTE_BASE: u32 = 0x031C;
 const BLEND_CONTROL: u32 = 0x0324;
+const STENCIL_CONTROL: u32 = 0x0328;
+const STENCIL_VALUE: u32 = 0x032C;
 const FOG_CONTROL: u32 = 0x0330;
 const LIGHT_CONTROL: u32 = 0x0350;
 const LIGHT_BASE: u32 = 0x0354;
@@ -279,4 +284,84 @@ fn effects_that_the_card_lacks_are_unsupported_before_their_registers_are_looked
         bench.bad(0x10, &[0, 0, 0], FaultCode::Unsupported, 0, EFFECTS);
         bench.bad(0x01, &[EFFECTS, effect], FaultCode::Unsupported, 2, effect);
     }
+}
+
+/// Values of registers in a scene with a stencil plane whose draws call for `effects`.
+fn stencil_bench(effects: u32, registers: &[(u32, u32)]) -> Bench {
+    let mut bench = Bench::with_stencil_plane();
+    bench.good(0x02, &[]);
+    bench.card.set(EFFECTS, effects);
+    for &(offset, value) in registers {
+        bench.card.set(offset, value);
+    }
+    bench
+}
+
+#[test]
+fn stencil_registers_become_a_test_with_operations_for_both_sides() {
+    use StencilOperation::{Decrement, DecrementWrap, Increment, IncrementWrap, Invert, Keep, Replace, Zero};
+    let mut bench = stencil_bench(STENCIL, &[(STENCIL_CONTROL, 0x7654_3213), (STENCIL_VALUE, 0x00CD_AB42)]);
+    let Call::Draw(state, _) = bench.last(0x10, &[&[0, 3, 0], &TRIANGLE[..]].concat()) else {
+        panic!("no draw");
+    };
+    let expected = Stencil {
+        test: StencilTest { function: DepthFunction::LessEqual, reference: 0x42, read_mask: 0xAB },
+        write_mask: 0xCD,
+        front: StencilOperations { fail: Replace, depth_fail: Increment, pass: Decrement },
+        back: StencilOperations { fail: Invert, depth_fail: IncrementWrap, pass: DecrementWrap },
+        colour_off: true,
+    };
+    assert_eq!(state.stencil, Some(expected));
+    // As the card resets them: everything passes and nothing changes.
+    let mut bench = stencil_bench(STENCIL, &[]);
+    let Call::Draw(state, _) = bench.last(0x10, &[&[0, 3, 0], &TRIANGLE[..]].concat()) else {
+        panic!("no draw");
+    };
+    let keep = StencilOperations { fail: Keep, depth_fail: Keep, pass: Keep };
+    let test = StencilTest { function: DepthFunction::Always, reference: 0, read_mask: 0xFF };
+    let plain = Stencil { test, write_mask: 0xFF, front: keep, back: keep, colour_off: false };
+    assert_eq!(state.stencil, Some(plain));
+    assert_eq!(plain.apply(Zero, 9), 0);
+}
+
+#[test]
+fn stencil_without_a_plane_or_with_a_grid_is_refused_at_effects() {
+    refused(STENCIL, &[], FaultCode::BadValue, EFFECTS);
+    let mut bench = Bench::with_stencil_plane();
+    bench.card.set(0x0260, 1);
+    bench.good(0x02, &[]);
+    bench.card.set(EFFECTS, STENCIL);
+    bench.bad(0x10, &[&[0, 3, 0], &TRIANGLE[..]].concat(), FaultCode::Unsupported, 0, EFFECTS);
+    bench.card.set(EFFECTS, 0);
+    bench.good(0x10, &[&[0, 3, 0], &TRIANGLE[..]].concat());
+}
+
+#[test]
+fn stencil_with_blending_may_test_but_not_change_nor_draw_no_colour() {
+    let triangle = [&[0, 3, 0], &TRIANGLE[..]].concat();
+    for control in [0x0000_0103, 0x0000_2003, 0x0005_0003, 0x0020_0003, 0x0300_0003, 0x7000_0003, 0x13] {
+        let mut bench = stencil_bench(STENCIL | BLEND, &[(STENCIL_CONTROL, control)]);
+        bench.bad(0x10, &triangle, FaultCode::Unsupported, 0, STENCIL_CONTROL);
+        // A mask of 0 changes nothing, whatever the operation.
+        bench.card.set(STENCIL_VALUE, 0x0000_FF00);
+        let (result, _) = bench.run(&crate::bench::packet(0x10, &triangle));
+        assert_eq!(result.is_ok(), control != 0x13, "{control:#x}");
+        bench.card.set(EFFECTS, STENCIL);
+        bench.good(0x10, &triangle);
+    }
+    stencil_bench(STENCIL | BLEND, &[(STENCIL_CONTROL, 3)]).good(0x10, &triangle);
+}
+
+#[test]
+fn stencil_with_colours_off_asks_for_no_colour() {
+    // No register of light and texture would do; a texture with holes is asked for them all the same.
+    let called = STENCIL | LIGHT | FOG | TEXTURE | MIP_MAP | 0x2;
+    let wrong = [(STENCIL_CONTROL, 0x17), (LIGHT_COUNT, 257), (TEXTURE_SIZE, 0), (FOG_CONTROL, 5)];
+    let mut bench = stencil_bench(called, &wrong);
+    let Call::Draw(state, _) = bench.last(0x10, &[&[0, 3, 0], &TRIANGLE[..]].concat()) else {
+        panic!("no draw");
+    };
+    assert_eq!(state.effects.bits(), STENCIL);
+    bench.card.set(EFFECTS, called | PUNCH_THROUGH);
+    bench.bad(0x10, &[&[0, 3, 0], &TRIANGLE[..]].concat(), FaultCode::BadValue, 0, TEXTURE_SIZE);
 }

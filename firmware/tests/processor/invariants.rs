@@ -159,9 +159,15 @@ pub fn target(mock: &Mock, target: &Target) {
     surface(mock, colour);
     let row_bytes = colour.width * colour.format.bytes();
     let a = frame(mock, colour.base, colour.pitch, row_bytes, colour.height);
+    let mut others = vec![a];
     if let Some(depth) = target.depth {
         let b = frame(mock, depth.base, depth.pitch, colour.width * 4, colour.height);
         assert!(a.1 <= b.0 || b.1 <= a.0, "{target:?}");
+        others.push(b);
+    }
+    if let Some(stencil) = target.stencil {
+        let c = frame(mock, stencil.base, stencil.pitch, colour.width, colour.height);
+        assert!(others.iter().all(|other| c.1 <= other.0 || other.1 <= c.0), "{target:?}");
     }
     assert!(matches!(target.subpixel_bits, 4 | 8));
     let [across, down] = target.za.block;
@@ -193,7 +199,8 @@ fn may_have_depth(target: &Target) -> bool {
 /// A clear.
 pub fn clear(target: &Target, clear: &Clear) {
     inside(target, &clear.area);
-    assert!(clear.colour.is_some() || clear.depth.is_some());
+    assert!(clear.colour.is_some() || clear.depth.is_some() || clear.stencil.is_some());
+    assert!(target.stencil.is_some() || clear.stencil.is_none());
     if let Some(depth) = clear.depth {
         assert!(may_have_depth(target));
         assert!(depth <= target.depth_format.maximum());
@@ -207,6 +214,12 @@ pub fn draw(mock: &Mock, target: &Target, state: &DrawState, draw: &Draw<'_>) {
     assert!(may_have_depth(target) || !state.effects.contains(Effects::DEPTH));
     assert!(target.subpixel.is_some() || !state.effects.contains(Effects::ANTI_ALIAS));
     assert!((1..=0xFFFF).contains(&state.line_width) && (1..=0xFFFF).contains(&state.point_size));
+    assert_eq!(state.stencil.is_some(), state.effects.contains(Effects::STENCIL));
+    if let Some(stencil) = &state.stencil {
+        assert!(target.stencil.is_some() && target.subpixel.is_none());
+        let blends = state.effects.contains(Effects::BLEND);
+        assert!(!blends || !(stencil.colour_off || stencil.changes_values()), "{stencil:?}");
+    }
     effects(mock, state);
     words(mock, &draw.vertices);
     let vertex_words = 3 + [(draw.coloured, 1), (draw.normals, 3), (draw.coordinates, 2)]

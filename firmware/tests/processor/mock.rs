@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use zga_abi::format::Topology;
 use zga_abi::registers::REGISTERS;
 use zga_abi::{Reg, Units};
-use zga_firmware::checked::{Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Stretch, Target, Words};
+use zga_firmware::checked::{
+    Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words,
+};
 use zga_firmware::{Hardware, Stopped};
 
 /// Bytes of video memory.
@@ -49,7 +51,7 @@ pub enum Call {
     SetRegister(u32, u32),
     Power(Units),
     BeginScene(Target),
-    EndScene,
+    EndScene(Option<Shadow>),
     Clear(Clear),
     Draw(DrawState, Drawn),
     Fill(Fill),
@@ -154,10 +156,11 @@ impl Hardware for Mock {
         self.work(Units::empty(), Call::BeginScene(*target));
     }
 
-    fn end_scene(&mut self) -> Result<(), Stopped> {
-        self.scene();
+    fn end_scene(&mut self, shadow: Option<&Shadow>) -> Result<(), Stopped> {
+        let target = self.scene();
+        assert!(shadow.is_none() || target.stencil.is_some(), "shadows come from a stencil plane");
         self.target = None;
-        self.work(Units::empty(), Call::EndScene);
+        self.work(Units::empty(), Call::EndScene(shadow.copied()));
         self.outcome()
     }
 

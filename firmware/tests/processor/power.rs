@@ -60,7 +60,7 @@ fn begin_scene_keeps_continuous_scanout_powered() {
 #[test]
 fn begin_scene_takes_power_and_effects_of_the_last_scene_away() {
     let mut bench = Bench::in_scene_with_grid();
-    draw(&mut bench, 0xFFF, true);
+    draw(&mut bench, 0x7FF, true);
     bench.good(0x31, &[0]);
     bench.good(0x03, &[]);
     assert_ne!(bench.processor.effects_called(), Effects::empty());
@@ -91,7 +91,13 @@ fn draw_each_effect_powers_its_unit_and_no_other() {
         (Effects::FOG.union(Effects::PERSPECTIVE), Units::SHADING),
     ];
     for (effects, units) in cases {
-        let mut bench = with_effects(Bench::in_scene_with_grid());
+        // A grid excludes the stencil test.
+        let bench = if effects == Effects::STENCIL {
+            Bench::in_scene_with_stencil_plane()
+        } else {
+            Bench::in_scene_with_grid()
+        };
+        let mut bench = with_effects(bench);
         let calls = draw(&mut bench, effects.bits(), true);
         let powered = plain() | units;
         assert_eq!(calls[0], Call::SetRegister(0x0700, effects.bits()));
@@ -222,7 +228,7 @@ fn draw_again_with_the_same_effects_changes_no_power_and_no_register() {
 #[test]
 fn draw_that_makes_no_primitive_calls_for_nothing() {
     let mut bench = Bench::in_scene_with_grid();
-    bench.card.set(0x0280, 0xFFF);
+    bench.card.set(0x0280, 0x7FF);
     bench.good(0x10, &[0, 0, 0]);
     assert_eq!(bench.processor.effects_called(), Effects::empty());
     assert_eq!(bench.card.units, Units::FRONTEND);

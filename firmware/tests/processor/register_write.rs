@@ -46,16 +46,16 @@ fn register_write_to_read_only_registers_is_a_bad_register() {
 
 #[test]
 fn register_write_where_no_register_is_or_between_words_is_a_bad_register() {
-    for offset in [0x021C, 0x06FC, 0x0201, 0x0402, 0x8000, 0xFFFF_FFFC, 0xFFFF_FFFF] {
+    for offset in [0x0224, 0x06FC, 0x0201, 0x0402, 0x8000, 0xFFFF_FFFC, 0xFFFF_FFFF] {
         Bench::new().bad(0x01, &[offset, 0], FaultCode::BadRegister, 1, offset);
     }
 }
 
 #[test]
 fn register_write_that_runs_into_a_gap_names_the_value_and_writes_nothing() {
-    // 0x0218 is the last register of its group.
-    let payload = [0x0214, 0, 0x1818, 0];
-    Bench::new().bad(0x01, &payload, FaultCode::BadRegister, 4, 0x021C);
+    // 0x0220 is the last register of its group.
+    let payload = [0x021C, 0, 64, 0];
+    Bench::new().bad(0x01, &payload, FaultCode::BadRegister, 4, 0x0224);
     // 0x0050 is no register, and beyond the range.
     Bench::new().bad(0x01, &[0x0048, 0, 0, 0], FaultCode::BadRegister, 4, 0x0050);
 }

@@ -3,13 +3,14 @@
 use crate::bench::{Bench, TRIANGLE};
 use crate::mock::{Call, MEMORY};
 use zga_abi::format::{
-    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid, SubpixelResolve,
-    TokenColour, TokenPorts, ZaPrediction,
+    DepthFormat, DepthFunction, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid,
+    SubpixelResolve, TokenColour, TokenPorts, ZaPrediction,
 };
 use zga_abi::{Fault, FaultCode};
 use zga_firmware::Stopped;
 use zga_firmware::checked::{
-    Clear, DepthSurface, Rectangle, SubpixelSetting, Surface, SystolicSetting, Target, ZaSetting,
+    Clear, DepthSurface, Rectangle, Shadow, StencilSurface, StencilTest, SubpixelSetting, Surface, SystolicSetting,
+    Target, ZaSetting,
 };
 
 const WHOLE: Rectangle = Rectangle { x: 0, y: 0, right: 64, bottom: 32 };
@@ -30,6 +31,8 @@ fn begin_scene_samples_the_target() {
     bench.card.set(0x0264, 2);
     bench.card.set(0x0268, 1);
     bench.card.set(0x026C, 4096);
+    bench.card.set(0x021C, 0x7000);
+    bench.card.set(0x0220, 64);
     let call = bench.last(0x02, &[]);
     let target = Target {
         colour: Surface { base: 0x1000, pitch: 256, width: 64, height: 32, format: PixelFormat::Xrgb8888 },
@@ -52,6 +55,7 @@ fn begin_scene_samples_the_target() {
             resolve: SubpixelResolve::Linear,
             pool: 4096,
         }),
+        stencil: Some(StencilSurface { base: 0x7000, pitch: 64 }),
     };
     assert_eq!(call, Call::BeginScene(target));
     assert_eq!(bench.processor.target(), Some(&target));
@@ -110,9 +114,16 @@ fn begin_scene_with_a_register_at_fault_names_its_offset() {
         (0x0268, 2, BadValue, 0x0268),
         (0x026C, 0, BadValue, 0x026C),
         (0x026C, 0x0010_0001, BadValue, 0x026C),
+        (0x021C, 0x7020, BadAlignment, 0x021C),
+        (0x021C, MEMORY - 0x7C0, OutOfMemory, 0x021C),
+        (0x021C, 0x1FC0, Overlap, 0x021C), // the frame buffer
+        (0x021C, 0x5FC0, Overlap, 0x021C), // the Z buffer
+        (0x021C, 0x3840, Overlap, 0x021C),
+        (0x0220, 0x41, BadAlignment, 0x0220),
+        (0x0220, 0xFFFF_FFC0, OutOfMemory, 0x021C),
     ];
     for (register, value, code, at_fault) in cases {
-        let mut bench = Bench::with_target();
+        let mut bench = Bench::with_stencil_plane();
         bench.card.set(register, value);
         bench.bad(0x02, &[], code, 0, at_fault);
     }
@@ -204,7 +215,7 @@ fn begin_scene_in_a_scene_is_refused() {
 #[test]
 fn end_scene_ends_and_another_may_begin() {
     let mut bench = Bench::in_scene();
-    assert_eq!(bench.good(0x03, &[]), [Call::EndScene]);
+    assert_eq!(bench.good(0x03, &[]), [Call::EndScene(None)]);
     assert!(!bench.processor.in_scene());
     assert_eq!(bench.processor.target(), None);
     bench.good(0x02, &[]);
@@ -225,7 +236,7 @@ fn end_scene_that_the_watchdog_stops_faults_and_is_over() {
     bench.card.stop = Some(Stopped::Watchdog);
     let (result, calls) = bench.run(&[0x0300_0000]);
     assert_eq!(result, Err(Fault::new(FaultCode::Watchdog, 0, 0)));
-    assert_eq!(calls, [Call::EndScene]);
+    assert_eq!(calls, [Call::EndScene(None)]);
     assert!(!bench.processor.in_scene());
 }
 
@@ -249,7 +260,7 @@ fn clear_of_each_set_of_planes_reaches_the_card() {
     let cases = [(1, Some(0x1122_3344), None), (2, None, Some(0x00FF_FFFF)), (3, Some(0x1122_3344), Some(0x00FF_FFFF))];
     for (planes, colour, depth) in cases {
         let call = Bench::in_scene().last(0x04, &[planes, 0x1122_3344, 0x00FF_FFFF]);
-        let clear = Clear { colour, depth, area: WHOLE };
+        let clear = Clear { colour, depth, stencil: None, area: WHOLE };
         assert_eq!(call, Call::Clear(clear));
     }
 }
@@ -261,7 +272,7 @@ fn clear_without_planes_does_nothing() {
 
 #[test]
 fn clear_of_unknown_planes_is_a_bad_value() {
-    for planes in [4, 7, 0x8000_0001] {
+    for planes in [8, 0x101, 0x8000_0001] {
         Bench::in_scene().bad(0x04, &[planes, 0, 0], FaultCode::BadValue, 1, planes);
     }
 }
@@ -296,7 +307,54 @@ fn clear_area_is_the_scissor_cut_to_the_target() {
         let mut bench = Bench::in_scene();
         bench.card.set(0x0290, minimum);
         bench.card.set(0x0294, maximum);
-        let expected = Clear { colour: Some(0), depth: None, area };
+        let expected = Clear { colour: Some(0), depth: None, stencil: None, area };
         assert_eq!(bench.last(0x04, &[1, 0, 0]), Call::Clear(expected));
+    }
+}
+
+#[test]
+fn begin_scene_with_stencil_pitch_zero_has_no_stencil_plane() {
+    let mut bench = Bench::with_stencil_plane();
+    bench.card.set(0x0220, 0);
+    bench.card.set(0x021C, 0xFFFF_FFFF);
+    bench.good(0x02, &[]);
+    assert_eq!(bench.processor.target().map(|target| target.stencil), Some(None));
+}
+
+#[test]
+fn clear_of_the_stencil_plane_takes_its_value_from_the_planes_word() {
+    let cases = [(0x4, None, None, 0), (0xA505, Some(7), None, 0xA5), (0xFF07, Some(7), Some(9), 0xFF)];
+    for (planes, colour, depth, stencil) in cases {
+        let mut bench = Bench::with_stencil_plane();
+        bench.good(0x02, &[]);
+        let clear = Clear { colour, depth, stencil: Some(stencil), area: WHOLE };
+        assert_eq!(bench.last(0x04, &[planes, 7, 9]), Call::Clear(clear));
+    }
+}
+
+#[test]
+fn clear_of_the_stencil_plane_where_there_is_none_or_with_odd_bits_is_a_bad_value() {
+    Bench::in_scene().bad(0x04, &[5, 0, 0], FaultCode::BadValue, 1, 5);
+    let mut bench = Bench::with_stencil_plane();
+    bench.good(0x02, &[]);
+    for planes in [0x0001_0004, 0x0000_0100, 0x0000_0102, 0x0000_000C] {
+        bench.bad(0x04, &[planes, 0, 0], FaultCode::BadValue, 1, planes);
+    }
+}
+
+#[test]
+fn end_scene_with_the_shadow_bit_has_shadows_only_after_a_stencil_draw() {
+    let shadow = Shadow {
+        test: StencilTest { function: DepthFunction::Less, reference: 0x12, read_mask: 0x7F },
+        intensity: 0x40,
+    };
+    for (effects, enable, expected) in [(0x800, 1, Some(shadow)), (0x800, 0, None), (0, 1, None)] {
+        let mut bench = Bench::with_stencil_plane();
+        bench.good(0x02, &[]);
+        bench.card.set(0x0280, effects);
+        bench.card.set(0x0380, 0x007F_1210 | enable);
+        bench.card.set(0x0384, 0x40);
+        bench.good(0x10, &[&[0, 3, 0], &TRIANGLE[..]].concat());
+        assert_eq!(bench.good(0x03, &[]), [Call::EndScene(expected)], "{effects:#x}, {enable}");
     }
 }

@@ -30,13 +30,15 @@ pub struct Composer<'a, 'b> {
     pub(super) memory: u32,
     /// The scene's pixels have samples.
     grid: bool,
+    /// The scene has a stencil plane.
+    plane: bool,
     packets: Vec<Vec<u32>>,
 }
 
 impl<'a, 'b> Composer<'a, 'b> {
     /// Packets for a card with `memory` bytes of video memory.
     pub fn new(bytes: &'b mut Bytes<'a>, memory: u32) -> Composer<'a, 'b> {
-        Composer { bytes, memory, grid: false, packets: Vec::new() }
+        Composer { bytes, memory, grid: false, plane: false, packets: Vec::new() }
     }
 
     /// A scene: target, begin, work, end. In every third or so a word is not what it was.
@@ -46,10 +48,16 @@ impl<'a, 'b> Composer<'a, 'b> {
         let subpixel = self.bytes.pick(&[8, 8, 8, 4]);
         self.write(Reg::SubpixelBits, &[subpixel]);
         self.samples();
+        self.stencil_plane(&picture);
         self.push(Opcode::BeginScene, &[]);
         self.state(&picture);
         for _ in 0..1 + self.bytes.below(8) {
             self.step(&picture);
+        }
+        if self.plane {
+            // SHADOW_CONTROL and SHADOW_INTENSITY: any value has a meaning.
+            let shadow = [self.bytes.raw(), self.bytes.raw()];
+            self.write(Reg::ShadowControl, &shadow);
         }
         self.push(Opcode::EndScene, &[]);
         if self.bytes.chance(60) {
@@ -154,6 +162,40 @@ impl<'a, 'b> Composer<'a, 'b> {
         self.write(Reg::SubpixelGrid, &values);
     }
 
+    /// A stencil plane for every other scene without a grid, and a few with one, where there is room beside the target's
+    /// other surfaces; none for the others.
+    fn stencil_plane(&mut self, picture: &Picture) {
+        let wanted = self.bytes.chance(if self.grid { 16 } else { 128 });
+        let pitch = picture.width.next_multiple_of(64);
+        let size = pitch * picture.height;
+        let depth = picture.depth.map(|[base, pitch]| [base, base + pitch * picture.height]);
+        let colour = [picture.base, picture.base + picture.pitch * picture.height];
+        let first = depth.map_or(colour[0], |depth| depth[0].min(colour[0]));
+        let beyond = depth.map_or(colour[1], |depth| depth[1].max(colour[1]));
+        let place = match (beyond.saturating_add(size) <= self.memory, size <= first) {
+            (true, _) => Some(beyond),
+            (_, true) => Some(first - size),
+            _ => None,
+        };
+        self.plane = wanted && place.is_some();
+        let values = if self.plane { [place.unwrap_or(0), pitch] } else { [0, 0] };
+        self.write(Reg::StencilBase, &values);
+    }
+
+    /// Sets a stencil test, which changes nothing where something blends, and says whether to call for it.
+    fn stencil_test(&mut self, blends: bool) -> bool {
+        if !self.plane || !self.bytes.chance(150) {
+            return false;
+        }
+        let function = self.bytes.pick(&[7, 7, 1, 2, 3, 4, 5, 6, 0]);
+        let operations = self.bytes.raw() & 0x7777_7710;
+        let keeps = blends && !self.bytes.chance(16);
+        let control = function | if keeps { 0 } else { operations };
+        let value = if self.bytes.chance(128) { 0x00FF_FF00 | self.bytes.below(4) } else { self.bytes.raw() };
+        self.write(Reg::StencilControl, &[control, value]);
+        true
+    }
+
     /// Effects, depth test, colour, tag, scissor.
     fn state(&mut self, picture: &Picture) {
         let depth = u32::from(picture.depth.is_some());
@@ -161,7 +203,8 @@ impl<'a, 'b> Composer<'a, 'b> {
             0..240 => {
                 let masks = if self.grid { self.bytes.pick(&[0, 0x400, 0x400, 0x500]) } else { 0 };
                 let looks = if self.bytes.chance(110) { self.looks() } else { 0 };
-                (self.bytes.below(16) & !1) | (depth & !u32::from(self.bytes.chance(32))) | masks | looks
+                let stencil = if self.stencil_test(looks & 0x100 != 0) { 0x800 } else { 0 };
+                (self.bytes.below(16) & !1) | (depth & !u32::from(self.bytes.chance(32))) | masks | looks | stencil
             }
             _ => self.bytes.word(),
         };
@@ -197,7 +240,12 @@ impl<'a, 'b> Composer<'a, 'b> {
             _ => self.bytes.raw() & picture.maximum_depth,
         };
         let colour = self.bytes.raw();
-        self.push(Opcode::Clear, &[colours | depths, colour, depth]);
+        let stencil = if self.plane && self.bytes.chance(128) {
+            packet::CLEAR_STENCIL | self.bytes.below(4) << packet::CLEAR_STENCIL_SHIFT
+        } else {
+            0
+        };
+        self.push(Opcode::Clear, &[colours | depths | stencil, colour, depth]);
     }
 
     /// Display: the frame, sometimes something else; shown, written back, or both.

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Index;
 
 /// Names, in the order of the COUNTERS registers.
-pub const NAMES: [&str; 64] = [
+pub const NAMES: [&str; 69] = [
     "cycles.total",
     "cycles.frontend",
     "cycles.geometry",
@@ -69,6 +69,11 @@ pub const NAMES: [&str; 64] = [
     "layers.fragments",
     "layers.blended",
     "layers.sorted_pixels",
+    "bitmap.combined",
+    "bitmap.stretched",
+    "stencil.tested",
+    "stencil.failed",
+    "stencil.shadowed",
 ];
 
 /// Values of all counters.

@@ -2,8 +2,11 @@
 
 use super::hidden::Hidden;
 use super::look::Look;
-use super::packet::{EFFECT_ANTI_ALIAS, EFFECT_BLEND, EFFECT_DECAL, EFFECT_DEPTH, EFFECT_GOURAUD, EFFECT_PERSPECTIVE};
+use super::packet::{
+    EFFECT_ANTI_ALIAS, EFFECT_BLEND, EFFECT_DECAL, EFFECT_DEPTH, EFFECT_GOURAUD, EFFECT_PERSPECTIVE, EFFECT_STENCIL,
+};
 use super::subpixel::Subpixel;
+use crate::oracle::stencil::{Operation, Shadow, Stencil};
 use crate::oracle::{DepthFormat, DepthFunction};
 use std::fmt;
 use zga_device::Kernel;
@@ -85,6 +88,8 @@ pub struct Options {
     pub subpixel: Subpixel,
     /// There is a Z buffer.
     pub depth_buffer: bool,
+    /// There is a stencil plane.
+    pub stencil: bool,
     /// Frame buffers, 1 or 2; they share the Z buffer.
     pub frames: u32,
 }
@@ -113,6 +118,7 @@ impl Default for Options {
             hidden: Hidden::default(),
             subpixel: Subpixel::default(),
             depth_buffer: true,
+            stencil: false,
             frames: 1,
         }
     }
@@ -187,6 +193,8 @@ pub struct State {
     pub point_size: u32,
     /// Left, top, right, bottom in pixels, the last two exclusive; all of the target without it.
     pub scissor: Option<[u32; 4]>,
+    /// Stencil test, where it is called for.
+    pub stencil: Option<Stencil>,
     /// Geometry registers.
     pub camera: Camera,
     /// Texture, holes, blend mode, fog, light.
@@ -210,6 +218,7 @@ impl Default for State {
             line_width: 0x100,
             point_size: 0x100,
             scissor: None,
+            stencil: None,
             camera: Camera::default(),
             look: Look::default(),
             piece: 0,
@@ -225,6 +234,9 @@ impl fmt::Debug for State {
         write!(f, "effects {:#x}, pieces of {piece}", self.effects())?;
         if (*line_width, *point_size) != (0x100, 0x100) {
             write!(f, ", lines {line_width:#x}, points {point_size:#x}")?;
+        }
+        if let Some(stencil) = &self.stencil {
+            write!(f, ", {stencil:?}")?;
         }
         if *look != Look::default() {
             write!(f, ", {look:?}")?;
@@ -250,6 +262,7 @@ impl State {
             | bit(self.decal, EFFECT_DECAL)
             | bit(self.blend, EFFECT_BLEND)
             | bit(self.anti_alias, EFFECT_ANTI_ALIAS)
+            | bit(self.stencil.is_some(), EFFECT_STENCIL)
             | self.look.effects()
     }
 
@@ -271,13 +284,41 @@ impl State {
         Self { anti_alias: true, ..Self::default() }
     }
 
+    /// Words of STENCIL_CONTROL and STENCIL_VALUE.
+    #[must_use]
+    pub fn stencil_words(stencil: &Stencil) -> [u32; 2] {
+        let operations = |of: [Operation; 3], low: u32| {
+            let code = |operation| Operation::ALL.iter().position(|&other| other == operation).unwrap_or(0) as u32;
+            of.into_iter().map(code).enumerate().fold(0, |word, (k, code)| word | code << (low + 4 * k as u32))
+        };
+        let control = function_code(stencil.function)
+            | u32::from(!stencil.colours) << 4
+            | operations(stencil.front, 8)
+            | operations(stencil.back, 20);
+        [control, u32::from_le_bytes([stencil.reference, stencil.read_mask, stencil.write_mask, 0])]
+    }
+
     /// Words of effects, depth control, material colour, tag, scissor minimum and maximum, line width, point size.
     #[must_use]
     pub fn words(&self) -> [u32; 8] {
-        let function = DepthFunction::ALL.iter().position(|&f| f == self.function).unwrap_or(0) as u32;
+        let function = function_code(self.function);
         let [left, top, right, bottom] = self.scissor.unwrap_or([0, 0, 0x7FFF, 0x7FFF]);
         let control = function | u32::from(self.write) << 8;
         let (first, last) = (top << 16 | left, bottom << 16 | right);
         [self.effects(), control, u32::MAX, 0, first, last, self.line_width, self.point_size]
     }
+}
+
+/// The number of a function in a register.
+pub(super) fn function_code(function: DepthFunction) -> u32 {
+    DepthFunction::ALL.iter().position(|&other| other == function).unwrap_or(0) as u32
+}
+
+/// Words of SHADOW_CONTROL and SHADOW_INTENSITY; disabled without a shadow.
+#[must_use]
+pub fn shadow_words(shadow: Option<&Shadow>) -> [u32; 2] {
+    shadow.map_or([0, 0], |shadow| {
+        let values = u32::from(shadow.reference) << 8 | u32::from(shadow.mask) << 16;
+        [1 | function_code(shadow.function) << 4 | values, u32::from(shadow.intensity)]
+    })
 }

@@ -20,6 +20,8 @@ pub const DOORBELL: u32 = 0x0110;
 pub const FENCE_SEQUENCE: u32 = 0x0140;
 /// Size, colour base, pitch, format, depth base, pitch, format.
 pub const TARGET: u32 = 0x0200;
+/// Stencil plane: base, pitch.
+pub const STENCIL_PLANE: u32 = 0x021C;
 /// Hidden-surface path, sub-pixel bits, fidelity, Za block, prediction and base, systolic variant, tile size.
 pub const PATH: u32 = 0x0240;
 /// Sub-pixel grid, depth, resolve and pool.
@@ -28,6 +30,10 @@ pub const SUBPIXEL: u32 = 0x0260;
 pub const DRAW_STATE: u32 = 0x0280;
 /// Texture: base, size, control, offset, window, colour, bias, palette; punch-through reference; blend mode.
 pub const TEXTURE: u32 = 0x0300;
+/// Stencil test: control, value.
+pub const STENCIL: u32 = 0x0328;
+/// Shadow bit: control, intensity.
+pub const SHADOW: u32 = 0x0380;
 /// Fog: function, density, end, depth cue scale and offset, colour.
 pub const FOG: u32 = 0x0330;
 /// Light: control, base, count, scene ambient, specular, emission, shininess.
@@ -79,6 +85,8 @@ pub const EFFECT_FOG: u32 = 0x80;
 pub const EFFECT_PUNCH_THROUGH: u32 = 0x200;
 /// Effect: translucent layers.
 pub const EFFECT_BLEND: u32 = 0x100;
+/// Effect: stencil test.
+pub const EFFECT_STENCIL: u32 = 0x800;
 /// Effect: sub-pixel masks.
 pub const EFFECT_ANTI_ALIAS: u32 = 0x400;
 
@@ -112,6 +120,14 @@ pub fn end_scene() -> Vec<u32> {
 pub fn clear(colour: Option<u32>, depth: Option<u32>) -> Vec<u32> {
     let planes = u32::from(colour.is_some()) | u32::from(depth.is_some()) << 1;
     packet(0x04, &[planes, colour.unwrap_or(0), depth.unwrap_or(0)])
+}
+
+/// CLEAR of frame buffer, Z buffer and stencil plane, or some of them.
+#[must_use]
+pub fn clear_with_stencil(colour: Option<u32>, depth: Option<u32>, stencil: Option<u8>) -> Vec<u32> {
+    let mut words = clear(colour, depth);
+    words[1] |= stencil.map_or(0, |value| 4 | u32::from(value) << 8);
+    words
 }
 
 /// DRAW_INLINE.

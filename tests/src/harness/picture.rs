@@ -20,6 +20,8 @@ pub struct Picture {
     pub colour: Vec<u32>,
     /// Stored depths.
     pub depth: Vec<u32>,
+    /// Stored stencil values; none without a plane.
+    pub stencil: Vec<u8>,
     /// Words of video memory outside the rows' pixels (row ends, and 4 KiB before and behind each buffer) that changed.
     pub strays: usize,
 }

@@ -8,11 +8,12 @@ use super::depth;
 use super::events::{Events, NAMES};
 use super::hidden::{Hidden, Path};
 use super::look::Look;
-use super::options::{Feed, Options, Pixels, State};
+use super::options::{Feed, Options, Pixels, State, shadow_words};
 use super::packet;
 use super::picture::Picture;
 use super::subpixel::Subpixel;
 use crate::oracle::effects::Corner;
+use crate::oracle::stencil::Shadow;
 use crate::oracle::{Primitive, Vertex};
 use std::time::Duration;
 use zga_abi::Bus;
@@ -97,6 +98,8 @@ pub(super) struct Places {
     pub colour_pitch: u32,
     pub depth: u32,
     pub depth_pitch: u32,
+    pub stencil: u32,
+    pub stencil_pitch: u32,
     pub vertices: u32,
     /// For what comes back: a word a pixel.
     pub scratch: u32,
@@ -136,7 +139,10 @@ impl Screen {
         let colour = 4 * RING_WORDS + GAP;
         let frame = (colour_pitch * height).next_multiple_of(GAP) + GAP;
         let depth = colour + options.frames.clamp(1, 2) * frame;
-        let vertices = (depth + depth_pitch * height).next_multiple_of(GAP) + GAP;
+        let stencil = (depth + depth_pitch * height).next_multiple_of(GAP) + GAP;
+        let stencil_pitch = if options.stencil { pitch(width) } else { 0 };
+        let vertices =
+            if options.stencil { (stencil + stencil_pitch * height).next_multiple_of(GAP) + GAP } else { stencil };
         let scratch = (vertices + options.vertex_bytes).next_multiple_of(GAP);
         let textures = (scratch + 4 * width * height).next_multiple_of(GAP);
         let end = (textures + options.texture_bytes).next_multiple_of(GAP).max(1 << 20);
@@ -159,6 +165,8 @@ impl Screen {
                 colour_pitch,
                 depth,
                 depth_pitch,
+                stencil,
+                stencil_pitch,
                 vertices,
                 scratch,
                 textures,
@@ -175,6 +183,9 @@ impl Screen {
         screen.fill_gaps();
         screen.start();
         screen.clear();
+        if options.stencil {
+            screen.clear_all_planes(None, None, Some(0), None);
+        }
         screen
     }
 
@@ -204,6 +215,10 @@ impl Screen {
         let format = format.bits | format.fraction << 8;
         let target = [size, colour, colour_pitch, pixels as u32, depth, depth_pitch, format];
         self.push(packet::registers(packet::TARGET, &target));
+        if self.options.stencil {
+            let plane = [self.places.stencil, self.places.stencil_pitch];
+            self.push(packet::registers(packet::STENCIL_PLANE, &plane));
+        }
         self.push(packet::registers(packet::PATH, &hidden.words(subpixel_bits)));
         self.push(packet::registers(packet::SUBPIXEL, &self.options.subpixel.words()));
     }
@@ -257,8 +272,24 @@ impl Screen {
 
     /// Clears planes of a rectangle: left, top, right, bottom, the last two exclusive.
     pub fn clear_planes(&mut self, colour: Option<u32>, depth: Option<u32>, scissor: Option<[u32; 4]>) {
+        self.clear_all_planes(colour, depth, None, scissor);
+    }
+
+    /// Clears planes of a rectangle, the stencil plane among them.
+    pub fn clear_all_planes(
+        &mut self,
+        colour: Option<u32>,
+        depth: Option<u32>,
+        stencil: Option<u8>,
+        scissor: Option<[u32; 4]>,
+    ) {
         self.begin(&State { scissor, ..State::default() });
-        self.push(packet::clear(colour, depth));
+        self.push(packet::clear_with_stencil(colour, depth, stencil));
+    }
+
+    /// Sets what END_SCENE does with pixels in shadow.
+    pub fn set_shadow(&mut self, shadow: Option<&Shadow>) {
+        self.push(packet::registers(packet::SHADOW, &shadow_words(shadow)));
     }
 
     /// Draws primitives in their own colours.
@@ -367,7 +398,8 @@ impl Screen {
             self.settle();
         }
         self.flush();
-        let Places { colour, colours, colour_pitch, depth, depth_pitch, vertices, .. } = self.places;
+        let Places { colour, colours, colour_pitch, depth, depth_pitch, stencil, stencil_pitch, vertices, .. } =
+            self.places;
         let first = colours[0] - GAP;
         let mut words = vec![0; ((vertices - first) / 4) as usize];
         self.bus.read_burst(packet::MEMORY + first, &mut words);
@@ -375,8 +407,16 @@ impl Screen {
         let pixels = self.options.pixels;
         let word = |at: u32| ((at - first) / 4) as usize;
         let rows = |base: u32, pitch: u32| (0..height).map(move |j| word(base) + j * (pitch / 4) as usize);
-        let mut picture =
-            Picture { width: self.width, height: self.height, pixels, colour: vec![], depth: vec![], strays: 0 };
+        let (width_pixels, height_pixels) = (self.width, self.height);
+        let mut picture = Picture {
+            width: width_pixels,
+            height: height_pixels,
+            pixels,
+            colour: vec![],
+            depth: vec![],
+            stencil: vec![],
+            strays: 0,
+        };
         // Pixels are taken out; what is left must be canaries.
         for start in rows(colour, colour_pitch) {
             for x in 0..width {
@@ -393,6 +433,15 @@ impl Screen {
         for start in rows(depth, depth_pitch) {
             picture.depth.extend(&words[start..start + width]);
             words[start..start + width].fill(CANARY);
+        }
+        if stencil_pitch != 0 {
+            for start in rows(stencil, stencil_pitch) {
+                for x in 0..width {
+                    let (word, shift) = (&mut words[start + x / 4], 8 * (x % 4));
+                    picture.stencil.push((*word >> shift) as u8);
+                    *word = *word & !(0xFF << shift) | CANARY & (0xFF << shift);
+                }
+            }
         }
         picture.strays = words.iter().filter(|&&word| word != CANARY).count();
         picture
@@ -467,6 +516,9 @@ impl Screen {
         if self.state != Some(*state) {
             self.push(packet::registers(packet::DRAW_STATE, &state.words()));
             self.push(packet::registers(packet::GEOMETRY, &state.camera.words()));
+            if let Some(stencil) = &state.stencil {
+                self.push(packet::registers(packet::STENCIL, &State::stencil_words(stencil)));
+            }
             if self.look != Some(state.look) {
                 self.set_look(&state.look);
             }

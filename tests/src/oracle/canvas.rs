@@ -5,6 +5,7 @@
 
 use super::depth::PrescribedDepth;
 use super::raster::for_each_pixel;
+use super::stencil::{Stencil, shows_front};
 use super::{DepthFormat, DepthFunction, Primitive};
 
 /// A rectangle of pixels: left, top, right, bottom, the last two exclusive; cut to the canvas.
@@ -19,6 +20,8 @@ pub struct Test {
     pub write: bool,
     /// Pixels that may change.
     pub scissor: Area,
+    /// Stencil test; `None` where it is not called for.
+    pub stencil: Option<Stencil>,
 }
 
 /// Colours and depths of a target, row by row.
@@ -36,6 +39,8 @@ pub struct Canvas {
     pub colour: Vec<u32>,
     /// Stored depths.
     pub depth: Vec<u32>,
+    /// Stored stencil values.
+    pub stencil: Vec<u8>,
 }
 
 impl Canvas {
@@ -43,7 +48,8 @@ impl Canvas {
     #[must_use]
     pub fn new(width: u32, height: u32, format: DepthFormat, encode: fn([u8; 4]) -> u32) -> Self {
         let pixels = width as usize * height as usize;
-        Self { width, height, format, encode, colour: vec![0; pixels], depth: vec![format.greatest(); pixels] }
+        let (colour, depth) = (vec![0; pixels], vec![format.greatest(); pixels]);
+        Self { width, height, format, encode, colour, depth, stencil: vec![0; pixels] }
     }
 
     /// All depths are the greatest.
@@ -70,21 +76,36 @@ impl Canvas {
         });
     }
 
+    /// Clears stencil values of a rectangle.
+    pub fn clear_stencil(&mut self, [left, top, right, bottom]: Area, value: u8) {
+        for j in top..bottom.min(self.height) {
+            for i in left..right.min(self.width) {
+                self.stencil[(j * self.width + i) as usize] = value;
+            }
+        }
+    }
+
     /// Draws primitives in order.
     pub fn draw(&mut self, primitives: &[Primitive], test: &Test) {
         let [left, top, right, bottom] = test.scissor;
         for primitive in primitives {
             let Some(plane) = PrescribedDepth::new(primitive, self.format) else { continue };
             let colour = (self.encode)(primitive.vertices()[0].colour);
-            let (width, height) = (self.width, self.height);
+            let (width, height, front) = (self.width, self.height, shows_front(primitive));
             for_each_pixel(primitive, width, height, |i, j| {
                 if !(left..right).contains(&i) || !(top..bottom).contains(&j) {
                     return;
                 }
                 let place = (j * width + i) as usize;
                 let new = plane.stored(i as i32, j as i32);
-                if test.function.is_none_or(|function| function.passes(&new, &self.depth[place])) {
-                    self.colour[place] = colour;
+                let mut drawn = test.function.is_none_or(|function| function.passes(&new, &self.depth[place]));
+                if let Some(stencil) = &test.stencil {
+                    (drawn, self.stencil[place]) = stencil.outcome(front, self.stencil[place], drawn);
+                }
+                if drawn {
+                    if test.stencil.is_none_or(|stencil| stencil.colours) {
+                        self.colour[place] = colour;
+                    }
                     if test.function.is_some() && test.write {
                         self.depth[place] = new;
                     }
@@ -107,7 +128,10 @@ mod tests {
     fn draw_less_equals_the_picture_of_one_draw() {
         let scene = [quad(9, [1; 4]), quad(5, [2; 4]), quad(7, [3; 4])];
         let mut canvas = Canvas::new(5, 3, DepthFormat::default(), u32::from_le_bytes);
-        canvas.draw(&scene, &Test { function: Some(DepthFunction::Less), write: true, scissor: [0, 0, 9, 9] });
+        canvas.draw(
+            &scene,
+            &Test { function: Some(DepthFunction::Less), write: true, scissor: [0, 0, 9, 9], stencil: None },
+        );
         let image = draw(5, 3, &scene, DepthFormat::default(), DepthFunction::Less);
         assert_eq!(canvas.depth, image.depth);
         assert_eq!(canvas.colour, [0x0202_0202; 15]);
@@ -125,7 +149,7 @@ mod tests {
     #[test]
     fn draw_without_test_or_write_keeps_depths() {
         let mut canvas = Canvas::new(2, 1, DepthFormat::default(), u32::from_le_bytes);
-        let test = Test { function: None, write: true, scissor: [0, 0, 1, 1] };
+        let test = Test { function: None, write: true, scissor: [0, 0, 1, 1], stencil: None };
         canvas.draw(&[quad(3, [1; 4])], &test);
         canvas.draw(&[quad(2, [4; 4])], &Test { function: Some(DepthFunction::Less), write: false, ..test });
         let far = canvas.format.greatest();

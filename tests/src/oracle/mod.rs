@@ -8,6 +8,7 @@
 //! | [`raster`] | which pixels (or points, or how much of a pixel) a primitive covers | top-left rule (Direct3D 10 rasterisation rules); diamond-exit rule (OpenGL 4.6, 14.5.1) |
 //! | [`depth`] | the depth on the exact plane, and the depth that the card's number formats prescribe | the card's manual, "Depth" |
 //! | [`image`] | the picture bit for bit: [`draw`] | submission order, one depth test for each covered pixel |
+//! | [`stencil`] | the stencil test, what becomes of stencil values, the shadow bit | the card's manual, "Stencil" |
 //! | [`truth`] | the picture with unrounded depths: [`draw_true`] | the same, compared as rationals |
 //! | [`canvas`] | the picture of many commands: any state, clears of planes and rectangles | the same |
 //! | [`clip`] | the unsnapped polygon of a homogeneous triangle | Sutherland and Hodgman 1974; Blinn and Newell 1978 |
@@ -40,6 +41,7 @@ pub mod effects;
 pub mod exact;
 pub mod image;
 pub mod raster;
+pub mod stencil;
 pub mod supersample;
 pub mod truth;
 

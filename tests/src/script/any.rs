@@ -6,6 +6,7 @@
 use super::{Between, Command, Scene, Script};
 use crate::harness::scenes::{Piece, any_depth, piece};
 use crate::harness::{Pixels, State, Subpixel};
+use crate::oracle::stencil::{Operation, Shadow, Stencil};
 use crate::oracle::{DepthFormat, DepthFunction, Vertex};
 use proptest::prelude::*;
 
@@ -16,6 +17,7 @@ struct Frame {
     format: DepthFormat,
     pixels: Pixels,
     depthless: bool,
+    stencil: bool,
     gouraud: bool,
     colours: [u32; 2],
     depths: [u32; 2],
@@ -44,16 +46,60 @@ pub(super) fn rectangle([width, height]: [u32; 2]) -> impl Strategy<Value = [u32
     prop_oneof![3 => free, 2 => aligned]
 }
 
+/// Something in so many of ten cases; 0 is never.
+pub fn sometimes<T: Clone + std::fmt::Debug>(
+    tenths: u32,
+    something: impl Strategy<Value = T>,
+) -> impl Strategy<Value = Option<T>> {
+    prop_oneof![10 - tenths => Just(None), tenths => something.prop_map(Some)]
+}
+
+/// A stencil test: often one that passes, and values close together, so that the same ones meet again.
+pub(super) fn stencil() -> impl Strategy<Value = Stencil> {
+    let function =
+        prop_oneof![2 => Just(DepthFunction::Always), 3 => prop::sample::select(DepthFunction::ALL.to_vec())];
+    let operation = prop::sample::select(Operation::ALL.to_vec());
+    let operations = prop_oneof![
+        1 => Just([Operation::Keep; 3]),
+        1 => operation.clone().prop_map(|pass| [Operation::Keep, Operation::Keep, pass]),
+        1 => operation.clone().prop_map(|depth_fail| [Operation::Keep, depth_fail, Operation::Keep]),
+        2 => [operation.clone(), operation.clone(), operation],
+    ];
+    let mask = || prop_oneof![3 => Just(0xFF), 1 => any::<u8>()];
+    let value = prop_oneof![4 => 0_u8..4, 1 => 253_u8..=255, 1 => any::<u8>()];
+    (function, value, mask(), mask(), operations.clone(), operations, prop::bool::weighted(0.7)).prop_map(
+        |(function, reference, read_mask, write_mask, front, back, colours)| Stencil {
+            function,
+            reference,
+            read_mask,
+            write_mask,
+            front,
+            back,
+            colours,
+        },
+    )
+}
+
+/// What lies in shadow.
+fn shadow() -> impl Strategy<Value = Shadow> {
+    let function =
+        prop_oneof![2 => Just(DepthFunction::NotEqual), 1 => prop::sample::select(DepthFunction::ALL.to_vec())];
+    (function, 0_u8..4, prop_oneof![2 => Just(0xFF), 1 => any::<u8>()], any::<u8>())
+        .prop_map(|(function, reference, mask, intensity)| Shadow { function, reference, mask, intensity })
+}
+
 fn state(frame: Frame) -> impl Strategy<Value = State> {
     let function = prop_oneof![4 => Just(DepthFunction::Less), 5 => prop::sample::select(DepthFunction::ALL.to_vec())];
     let scissor = prop::option::weighted(0.25, rectangle(frame.size));
-    (function, prop::bool::weighted(0.8), prop::bool::weighted(0.85), scissor).prop_map(
-        move |(function, write, depth_test, scissor)| State {
+    let stencil = sometimes(if frame.stencil { 8 } else { 0 }, stencil());
+    (function, prop::bool::weighted(0.8), prop::bool::weighted(0.85), scissor, stencil).prop_map(
+        move |(function, write, depth_test, scissor, stencil)| State {
             depth_test: depth_test && !frame.depthless,
             function,
             write,
             gouraud: frame.gouraud,
             scissor,
+            stencil,
             ..State::default()
         },
     )
@@ -83,13 +129,19 @@ fn clear(frame: Frame) -> impl Strategy<Value = Command> {
     let (colours, depths) = (frame.colours, frame.depths);
     let planes = prop_oneof![3 => Just((true, true)), 1 => Just((true, false)), 1 => Just((false, true))];
     let scissor = prop::option::weighted(0.5, rectangle(frame.size));
-    (planes, prop::sample::select(colours.to_vec()), prop::sample::select(depths.to_vec()), scissor).prop_map(
-        move |((coloured, deep), colour, depth, scissor)| Command::Clear {
-            colour: (coloured || frame.depthless).then_some(colour),
-            depth: (deep && !frame.depthless).then_some(depth),
+    // Of the stencil plane beside the others, alone, or not at all.
+    let value = sometimes(if frame.stencil { 5 } else { 0 }, 0_u8..4);
+    let alone = prop::bool::weighted(0.4);
+    let values = (prop::sample::select(colours.to_vec()), prop::sample::select(depths.to_vec()), value, alone);
+    (planes, values, scissor).prop_map(move |((coloured, deep), (colour, depth, stencil, alone), scissor)| {
+        let others = stencil.is_none() || !alone;
+        Command::Clear {
+            colour: ((coloured || frame.depthless) && others).then_some(colour),
+            depth: (deep && !frame.depthless && others).then_some(depth),
+            stencil,
             scissor,
-        },
-    )
+        }
+    })
 }
 
 fn between(frame: Frame) -> impl Strategy<Value = Between> {
@@ -131,6 +183,7 @@ fn scene(frame: Frame, shared: bool) -> impl Strategy<Value = Scene> {
     let whole = Command::Clear {
         colour: Some(frame.colours[0]),
         depth: (!frame.depthless).then_some(frame.depths[0]),
+        stencil: None,
         scissor: None,
     };
     let first = prop_oneof![4 => Just(vec![whole]), 1 => clear(frame).prop_map(|clear| vec![clear]), 2 => Just(vec![])];
@@ -139,15 +192,22 @@ fn scene(frame: Frame, shared: bool) -> impl Strategy<Value = Scene> {
     let command = prop_oneof![6 => draw, 2 => clear(frame), 1 => Just(Command::Look), weight => in_scene(frame)];
     let commands = (first, prop::collection::vec(command, 0..6)).prop_map(|(first, rest)| [first, rest].concat());
     let after = prop_oneof![3 => Just(vec![]), 1 => prop::collection::vec(between(frame), 1..4)];
-    (prop_oneof![3 => Just(0), 1 => Just(1)], commands, after).prop_map(|(frame, commands, after)| Scene {
-        frame,
-        commands,
-        after,
-    })
+    let shadow = sometimes(if frame.stencil { 5 } else { 0 }, shadow());
+    (prop_oneof![3 => Just(0), 1 => Just(1)], commands, shadow, after)
+        .prop_map(|(frame, commands, shadow, after)| Scene { frame, commands, shadow, after })
 }
 
 /// A script of up to `scenes` scenes on a target of up to `most` pixels a side.
 pub fn script(most: u32, scenes: usize) -> impl Strategy<Value = Script> {
+    scripts(most, scenes, false)
+}
+
+/// The same with a stencil plane, and draws that test it.
+pub fn stencil_script(most: u32, scenes: usize) -> impl Strategy<Value = Script> {
+    scripts(most, scenes, true)
+}
+
+fn scripts(most: u32, scenes: usize, stencil: bool) -> impl Strategy<Value = Script> {
     let pixels = prop::sample::select(vec![Pixels::Xrgb8888, Pixels::Argb8888, Pixels::Rgb565]);
     let flags = (prop::bool::weighted(0.1), prop::bool::weighted(0.25), prop::bool::weighted(0.2));
     (size(most), format(), pixels, flags, any::<[u32; 2]>()).prop_flat_map(
@@ -155,12 +215,13 @@ pub fn script(most: u32, scenes: usize) -> impl Strategy<Value = Script> {
             let (depthless, gouraud, shared) = flags;
             let depths = [Just(format.greatest()).boxed(), any_depth(format.bits).boxed()];
             depths.prop_flat_map(move |depths| {
-                let frame = Frame { size, format, pixels, depthless, gouraud, colours, depths };
+                let frame = Frame { size, format, pixels, depthless, stencil, gouraud, colours, depths };
                 prop::collection::vec(scene(frame, shared), 1..=scenes).prop_map(move |scenes| Script {
                     size,
                     format,
                     pixels,
                     depthless,
+                    stencil,
                     gouraud,
                     subpixel: Subpixel::default(),
                     scenes,

@@ -3,6 +3,7 @@
 use super::{Between, Command, Outcome, Script};
 use crate::harness::{Pixels, State};
 use crate::oracle::canvas::{Canvas, Test};
+use crate::oracle::stencil::Shadow;
 
 /// What must be seen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,15 +14,17 @@ pub struct Judgement {
     pub looks: Vec<Option<Vec<u32>>>,
     /// Depths at the end.
     pub depths: Vec<u32>,
+    /// Stencil values at the end.
+    pub stencils: Vec<u8>,
 }
 
 impl Judgement {
     /// Where an outcome is wrong, if it is.
     #[must_use]
     pub fn fault(&self, outcome: &Outcome) -> Option<String> {
-        let Self { shown, looks, depths } = self.clone();
-        let depths = Some(depths);
-        outcome.difference(&Outcome { shown, looks, depths, stored: None, strays: 0, events: outcome.events })
+        let Self { shown, looks, depths, stencils } = self.clone();
+        let (depths, stencils, events) = (Some(depths), Some(stencils), outcome.events);
+        outcome.difference(&Outcome { shown, looks, depths, stencils, stored: None, strays: 0, events })
     }
 }
 
@@ -36,7 +39,7 @@ pub fn judge(script: &Script, forgets: bool) -> Option<Judgement> {
     let mut canvas = Canvas::new(width, height, script.format, encode(pixels));
     // Frame 0 was cleared to transparent black, frame 1 filled with pixels of 0.
     let mut frames = [vec![(canvas.encode)([0; 4]); canvas.colour.len()], canvas.colour.clone()];
-    let mut judgement = Judgement { shown: Vec::new(), looks: Vec::new(), depths: Vec::new() };
+    let mut judgement = Judgement { shown: Vec::new(), looks: Vec::new(), depths: Vec::new(), stencils: Vec::new() };
     let look = |frame: &[u32]| frame.iter().map(|&pixel| shown(pixels, pixel)).collect::<Vec<u32>>();
     let mut place = 0;
     for scene in &script.scenes {
@@ -44,25 +47,33 @@ pub fn judge(script: &Script, forgets: bool) -> Option<Judgement> {
         if forgets {
             canvas.forget_depths();
         }
+        let mut called = false;
         for command in &scene.commands {
             match command {
-                Command::Clear { colour, depth, scissor } => {
+                Command::Clear { colour, depth, stencil, scissor } => {
                     let area = scissor.unwrap_or([0, 0, width, height]);
                     canvas.clear(area, colour.map(u32::to_le_bytes), *depth);
+                    if let Some(value) = stencil {
+                        canvas.clear_stencil(area, *value);
+                    }
                 }
                 Command::Draw { pieces, state } => {
                     canvas.draw(&script.primitives(place, pieces), &test(state, script.size));
                     place += 1;
+                    called |= state.stencil.is_some();
                 }
                 Command::Memory(between) => change(&mut canvas, between, pixels),
                 Command::Look => judgement.looks.push(Some(look(&canvas.colour))),
             }
         }
+        if let (Some(shadow), true) = (&scene.shadow, called) {
+            darken(&mut canvas, shadow, pixels);
+        }
         scene.after.iter().for_each(|between| change(&mut canvas, between, pixels));
         std::mem::swap(&mut canvas.colour, &mut frames[scene.frame]);
         judgement.shown.push([0, 1].map(|frame| look(&frames[frame])));
     }
-    judgement.depths = canvas.depth;
+    (judgement.depths, judgement.stencils) = (canvas.depth, canvas.stencil);
     Some(judgement)
 }
 
@@ -71,6 +82,18 @@ pub(super) fn test(state: &State, [width, height]: [u32; 2]) -> Test {
         function: state.depth_test.then_some(state.function),
         write: state.write,
         scissor: state.scissor.unwrap_or([0, 0, width, height]),
+        stencil: state.stencil,
+    }
+}
+
+/// What the shadow bit does to a frame.
+fn darken(canvas: &mut Canvas, shadow: &Shadow, pixels: Pixels) {
+    for (stored, value) in canvas.colour.iter_mut().zip(&canvas.stencil) {
+        if shadow.falls_on(*value) {
+            let [_, r, g, b] = shown(pixels, *stored).to_be_bytes();
+            let [r, g, b] = [r, g, b].map(|level| shadow.darken(level));
+            *stored = (canvas.encode)([r, g, b, (*stored >> 24) as u8]);
+        }
     }
 }
 

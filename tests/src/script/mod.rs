@@ -21,6 +21,7 @@ pub use run::{Outcome, Way, run};
 
 use crate::harness::scenes::{Piece, primitives};
 use crate::harness::{Grid, Pixels, Random, State, Subpixel};
+use crate::oracle::stencil::Shadow;
 use crate::oracle::{DepthFormat, Primitive, Vertex};
 
 /// Scenes on one or two frames that share a Z buffer.
@@ -34,6 +35,8 @@ pub struct Script {
     pub pixels: Pixels,
     /// No draw tests depth, no clear has one: the target needs no Z buffer.
     pub depthless: bool,
+    /// There is a stencil plane.
+    pub stencil: bool,
     /// Colours are interpolated.
     pub gouraud: bool,
     /// Samples of a pixel.
@@ -49,6 +52,8 @@ pub struct Scene {
     pub frame: usize,
     /// In the scene.
     pub commands: Vec<Command>,
+    /// What END_SCENE darkens, if a draw called for a stencil test.
+    pub shadow: Option<Shadow>,
     /// After it.
     pub after: Vec<Between>,
 }
@@ -63,6 +68,8 @@ pub enum Command {
         colour: Option<u32>,
         /// Depth.
         depth: Option<u32>,
+        /// Stencil value.
+        stencil: Option<u8>,
         /// Left, top, right, bottom; all without it.
         scissor: Option<[u32; 4]>,
     },

@@ -46,6 +46,8 @@ pub struct Outcome {
     pub looks: Vec<Option<Vec<u32>>>,
     /// Depths at the end; none without a Z buffer that lasts.
     pub depths: Option<Vec<u32>>,
+    /// Stencil values at the end; none without a plane.
+    pub stencils: Option<Vec<u8>>,
     /// The frame drawn to last, as it is stored; not where nobody knows it.
     pub stored: Option<Vec<u32>>,
     /// Words of memory outside the target that changed.
@@ -87,6 +89,11 @@ impl Outcome {
         if let Some(what) = what {
             return Some(format!("depth {what}"));
         }
+        if let Some((mine, others)) = self.stencils.as_ref().zip(other.stencils.as_ref())
+            && let Some(place) = mine.iter().zip(others).position(|(a, b)| a != b)
+        {
+            return Some(format!("stencil value {place}: {} and {}", mine[place], others[place]));
+        }
         let what = self.stored.as_ref().zip(other.stored.as_ref()).and_then(|(mine, others)| first(mine, others));
         what.map(|what| format!("stored pixel {what}"))
     }
@@ -104,6 +111,7 @@ pub fn run(script: &Script, way: &Way) -> Outcome {
         hidden: way.hidden[0],
         subpixel: script.subpixel,
         depth_buffer: way.depth_buffer,
+        stencil: script.stencil,
         frames: 2,
         ..Options::default()
     };
@@ -151,7 +159,9 @@ impl Runner<'_> {
         }
         for command in &scene.commands {
             match command {
-                Command::Clear { colour, depth, scissor } => self.screen.clear_planes(*colour, *depth, *scissor),
+                Command::Clear { colour, depth, stencil, scissor } => {
+                    self.screen.clear_all_planes(*colour, *depth, *stencil, *scissor);
+                }
                 Command::Draw { pieces, state } => {
                     let primitives = self.script.primitives(self.place, pieces);
                     self.place += 1;
@@ -163,6 +173,9 @@ impl Runner<'_> {
                     self.looks.push(look);
                 }
             }
+        }
+        if self.script.stencil {
+            self.screen.set_shadow(scene.shadow.as_ref());
         }
         self.screen.end();
         scene.after.iter().for_each(|between| self.between(between));
@@ -200,6 +213,7 @@ impl Runner<'_> {
             shown: self.shown,
             looks: self.looks,
             depths,
+            stencils: self.script.stencil.then_some(picture.stencil),
             stored: Some(picture.colour),
             strays: picture.strays,
             events: self.events.of_units(),

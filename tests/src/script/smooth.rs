@@ -130,7 +130,7 @@ pub fn judge(script: &Script) -> Judgement {
         target.load(&colours, &depths);
         for command in &scene.commands {
             match command {
-                Command::Clear { colour, depth, scissor } => {
+                Command::Clear { colour, depth, scissor, .. } => {
                     let area = scissor.unwrap_or([0, 0, size[0], size[1]]);
                     target.clear(area, colour.map(u32::to_le_bytes), *depth);
                 }
@@ -224,19 +224,21 @@ fn clear(frame: Frame) -> impl Strategy<Value = Command> {
     (planes, values, scissor).prop_map(move |((coloured, deep), (colour, depth), scissor)| Command::Clear {
         colour: (coloured || frame.depthless).then_some(colour),
         depth: (deep && !frame.depthless).then_some(depth),
+        stencil: None,
         scissor,
     })
 }
 
 fn scene(frame: Frame, layers: bool) -> impl Strategy<Value = Scene> {
     let (colour, depth) = (Some(frame.colours[0]), (!frame.depthless).then_some(frame.depths[0]));
-    let whole = Command::Clear { colour, depth, scissor: None };
+    let whole = Command::Clear { colour, depth, stencil: None, scissor: None };
     let first = prop_oneof![3 => Just(vec![whole]), 1 => clear(frame).prop_map(|clear| vec![clear]), 2 => Just(vec![])];
     let draw = (pieces(frame), state(frame, layers)).prop_map(|(pieces, state)| Command::Draw { pieces, state });
     let command = prop_oneof![5 => draw, 1 => clear(frame)];
     (first, prop::collection::vec(command, 0..6)).prop_map(|(first, rest)| Scene {
         frame: 0,
         commands: [first, rest].concat(),
+        shadow: None,
         after: vec![],
     })
 }
@@ -263,6 +265,7 @@ pub fn script(most: u32, scenes: usize, layers: bool) -> impl Strategy<Value = S
                 format,
                 pixels,
                 depthless,
+                stencil: false,
                 gouraud: false,
                 subpixel: if early.is_empty() { subpixel } else { Subpixel { resolve: Resolve::Values, ..subpixel } },
                 scenes: early.into_iter().chain([last]).collect(),

@@ -209,6 +209,13 @@ pub(super) fn reduce(batches: &mut [Batch], has: Effects) -> Vec<&'static str> {
         if lacks(Effects::TEXTURE, "textures", material.texture.is_some()) {
             material.texture = None;
         }
+        if lacks(Effects::STENCIL, "stencil tests", material.stencil.is_some()) {
+            // What draws stencil values alone has nothing left to draw.
+            if material.stencil.is_some_and(|stencil| !stencil.colours) {
+                batch.indices.clear();
+            }
+            material.stencil = None;
+        }
         if let Some(texture) = &mut material.texture
             && lacks(Effects::MIP_MAP, "MIP maps", has_levels(texture))
         {

@@ -16,6 +16,7 @@ use super::Machine;
 use super::element::{Element, Rules};
 use super::tape::{Fixed, LANES, Tape};
 use super::token::{Beat, Luminance, Pixel, control};
+use crate::hidden::stencil::StencilRule;
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, i32x16, mask32x16, u32x16};
 use zga_abi::format::{EndTest, TokenPorts};
@@ -77,6 +78,8 @@ impl Array {
                 (state & control::KIND) >> control::KIND_SHIFT,
                 self.kept.word(staying::LUMINANCE, element),
             ),
+            d: StencilRule::Keep,
+            stencil: 0,
         }
     }
 
@@ -159,7 +162,7 @@ impl Array {
 /// A refresh token's beat T3 at one element: what it drives on the buses.
 pub fn refresh(depth: &mut u32, luminance: &mut u32, state: &mut u32, reset: i32) -> Option<Pixel> {
     let kind = (*state & control::KIND) >> control::KIND_SHIFT;
-    let pixel = Pixel { luminance: Luminance::decode(kind, *luminance), depth: *depth as i32 };
+    let pixel = Pixel { luminance: Luminance::decode(kind, *luminance), depth: *depth as i32, stencil: 0 };
     *depth = reset as u32;
     *luminance = 0;
     *state &= !control::KIND;

@@ -17,6 +17,7 @@
 
 use super::Machine;
 use super::token::{Beat, Luminance, Pixel, control};
+use crate::hidden::stencil::{StencilCounts, StencilRule};
 use zga_abi::format::{EndTest, TokenPorts};
 use zga_firmware::checked::SystolicSetting;
 
@@ -46,11 +47,24 @@ pub struct Element {
     pub depth: i32,
     /// Ib.
     pub luminance: Luminance,
+    /// D.
+    pub d: StencilRule,
+    /// Stencil value, in a scene that asks for any.
+    pub stencil: u8,
+}
+
+/// What an element does its stencil test with beside its registers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StencilPart {
+    /// The value that a refresh token leaves.
+    pub reset: u8,
+    /// Events.
+    pub counts: StencilCounts,
 }
 
 impl Element {
     /// One clock. `reset` is what Zb takes when a refresh token comes by; returns what is driven on the buses.
-    pub fn clock(&mut self, input: &Beat, rules: &Rules, reset: i32) -> Option<Pixel> {
+    pub fn clock(&mut self, input: &Beat, rules: &Rules, reset: i32, stencil: &mut StencilPart) -> Option<Pixel> {
         let mut driven = None;
         let mut control = input.control;
         match input.control & control::PHASE {
@@ -68,37 +82,46 @@ impl Element {
             }
             control::T2 => self.a = if self.inside { input.a.wrapping_add(input.b) } else { input.a },
             control::T3 if input.control & control::REFRESH != 0 => {
-                driven = Some(Pixel { luminance: self.luminance, depth: self.depth });
+                driven = Some(Pixel { luminance: self.luminance, depth: self.depth, stencil: self.stencil });
                 self.luminance = Luminance::Background;
                 self.depth = reset;
+                self.stencil = stencil.reset;
             }
             control::T3 => {
                 if self.inside {
-                    compare(input, input.a as i64, rules.below, &mut self.depth, &mut self.luminance);
+                    let mine = (&mut self.depth, &mut self.luminance, &mut self.stencil);
+                    compare(input, input.a as i64, rules.below, mine, &mut stencil.counts);
                 }
             }
             _ => self.a = input.a,
         }
-        (self.b, self.c, self.control) = (input.b, input.c, control);
+        (self.b, self.c, self.control, self.d) = (input.b, input.c, control, input.d);
         driven
     }
 
     /// What the element to the right sees.
     #[must_use]
     pub fn output(&self) -> Beat {
-        Beat { a: self.a, b: self.b, c: self.c, control: self.control }
+        Beat { a: self.a, b: self.b, c: self.c, control: self.control, d: self.d }
     }
 }
 
-/// The comparison at T3: `z` shifted, clamped to the range on port C, against Zb.
-pub fn compare(input: &Beat, z: i64, below: u32, depth: &mut i32, luminance: &mut Luminance) {
+/// The comparison at T3: the stencil value by the rule on port D; `z` shifted, clamped to the range on port C, against Zb.
+/// The element's depth, luminance and stencil value are changed.
+pub fn compare(
+    input: &Beat,
+    z: i64,
+    below: u32,
+    (depth, luminance, stencil): (&mut i32, &mut Luminance, &mut u8),
+    counts: &mut StencilCounts,
+) {
     let z = (z >> below).clamp(i64::from(input.c[0]), i64::from(input.c[1])) as i32;
     let relation = match z.cmp(depth) {
         std::cmp::Ordering::Less => control::LESS,
         std::cmp::Ordering::Equal => control::EQUAL,
         std::cmp::Ordering::Greater => control::GREATER,
     };
-    if input.control & relation == 0 {
+    if !input.d.decide(stencil, counts, || input.control & relation != 0) {
         return;
     }
     if input.control & control::WRITE != 0 {
@@ -115,13 +138,14 @@ pub struct Elements {
     /// The elements, leftmost first.
     pub elements: Vec<Element>,
     rules: Rules,
+    stencil: StencilPart,
 }
 
 impl Elements {
     /// `count` elements that hold nothing.
     #[must_use]
     pub fn new(count: u32, rules: Rules) -> Elements {
-        Elements { elements: vec![Element::default(); count as usize], rules }
+        Elements { elements: vec![Element::default(); count as usize], rules, stencil: StencilPart::default() }
     }
 }
 
@@ -133,13 +157,25 @@ impl Machine for Elements {
         // From the far end, so that each element still sees what its neighbour held before the clock.
         for place in (0..self.elements.len()).rev() {
             let input = if place == 0 { port } else { self.elements[place - 1].output() };
-            driven = self.elements[place].clock(&input, &self.rules, reset).or(driven);
+            driven = self.elements[place].clock(&input, &self.rules, reset, &mut self.stencil).or(driven);
         }
         driven
     }
 
     fn preset(&mut self, element: usize, depth: i32) {
         self.elements[element].depth = depth;
+    }
+
+    fn preset_stencil(&mut self, element: usize, value: u8) {
+        self.elements[element].stencil = value;
+    }
+
+    fn reset_stencil(&mut self, value: u8) {
+        self.stencil.reset = value;
+    }
+
+    fn stencil_counts(&self) -> StencilCounts {
+        self.stencil.counts
     }
 
     fn signals(&self, element: usize, port: &Beat) -> Vec<u64> {

@@ -15,6 +15,7 @@ use crate::geometry::assembly::Shape;
 use crate::geometry::line::Line;
 use crate::geometry::plane::{Axis, DepthPlane, below};
 use crate::hidden::held::{Held, HeldDraw, Item};
+use crate::hidden::stencil::StencilRule;
 use crate::hidden::z_buffer::DepthTest;
 use crate::hidden::z_buffer::specification::colour_plane;
 use crate::shading::pixel::{PixelShading, ShadingCounts};
@@ -131,7 +132,7 @@ impl<'a> Feeder<'a> {
     /// The token of an item on line `y`, if it covers anything there.
     fn token(&self, item: &Item, number: u32, y: u32) -> Option<Token> {
         match item {
-            Item::Clear { area, colour, depth } => {
+            Item::Clear { area, colour, depth, stencil } => {
                 let depth = depth.unwrap_or(0);
                 let plane = DepthPlane {
                     reference: i64::from(depth) << below(self.format),
@@ -147,7 +148,8 @@ impl<'a> Feeder<'a> {
                     Item::Clear { depth: Some(_), .. } => DepthTest { write: true, ..DepthTest::ALWAYS },
                     _ => DepthTest::ALWAYS,
                 };
-                segment([area.x as i32, area.right as i32], area, y, &plane, test, luminance)
+                let token = segment([area.x as i32, area.right as i32], area, y, &plane, test, luminance)?;
+                Some(Token { stencil: stencil.map_or(StencilRule::Keep, StencilRule::Store), ..token })
             }
             Item::Primitive(shape, draw) => {
                 let draw = &self.held.draws[*draw as usize];
@@ -157,7 +159,9 @@ impl<'a> Feeder<'a> {
                 };
                 let test = draw.test.unwrap_or(DepthTest::ALWAYS);
                 let columns = columns(shape, &draw.scissor, y as i32);
-                segment(columns, &draw.scissor, y, &shape.plane(self.format), test, Some(luminance))
+                let luminance = draw.draws_colours().then_some(luminance);
+                let token = segment(columns, &draw.scissor, y, &shape.plane(self.format), test, luminance)?;
+                Some(Token { stencil: draw.stencil_rule(shape), ..token })
             }
         }
     }
@@ -210,6 +214,7 @@ pub fn segment(
         range: [plane.minimum, plane.maximum],
         test,
         luminance,
+        stencil: StencilRule::Keep,
     })
 }
 

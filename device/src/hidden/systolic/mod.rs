@@ -27,7 +27,8 @@
 //! # Clocks
 //! 3 a token, 3 a refresh token, at least N between refresh tokens, N + 2 at the end; see
 //! [`closed_form`](mod@closed_form). Interpolated colours are shaded once for each pixel they are seen at, 1 clock
-//! each. Depths are loaded and stored along with the refresh tokens where there is a Z buffer: no clocks.
+//! each. Depths are loaded and stored along with the refresh tokens where there is a Z buffer, stencil values where the
+//! scene asks for any: no clocks. Such a scene is stepped element by element, as the elements are specified.
 #![doc = include_str!("worked_example.md")]
 
 pub mod array;
@@ -49,6 +50,7 @@ pub use scene::draw_scene;
 pub use scene::draw_until;
 pub use waves::Waves;
 
+use crate::hidden::stencil::StencilCounts;
 use crate::probe::account::{Account, Clocks};
 use crate::shading::pixel::ShadingCounts;
 use token::Pixel;
@@ -70,6 +72,18 @@ pub trait Machine {
 
     /// Sets Zb of an element before the first clock.
     fn preset(&mut self, element: usize, depth: i32);
+
+    /// Sets the stencil value of an element before the first clock; only machines of scenes that ask for stencil values
+    /// keep any.
+    fn preset_stencil(&mut self, _element: usize, _value: u8) {}
+
+    /// Gives the stencil value that the element takes where a refresh token comes by in the next clock.
+    fn reset_stencil(&mut self, _value: u8) {}
+
+    /// Events of stencil tests.
+    fn stencil_counts(&self) -> StencilCounts {
+        StencilCounts::default()
+    }
 
     /// Values of an element's signals before a clock in which `port` stands on the ports of element 0.
     fn signals(&self, element: usize, port: &Self::Port) -> Vec<u64>;
@@ -97,6 +111,8 @@ pub struct SystolicCounts {
     pub shaded: u64,
     /// What they cost beyond interpolated colours.
     pub shading: ShadingCounts,
+    /// Events of stencil tests.
+    pub stencil: StencilCounts,
 }
 
 /// Charges the events of a scene.
@@ -111,4 +127,5 @@ pub fn charge(counts: &SystolicCounts, account: &mut Account) {
     account.add(Counter::ShadingPixels, counts.shaded);
     account.charge(Counter::CyclesShading, Clocks(counts.shaded));
     counts.shading.charge(account);
+    counts.stencil.charge(account);
 }

@@ -45,7 +45,8 @@ pub fn draw_until(
     let below = below(target.depth_format);
     let (width, rules) = (target.colour.width, Rules { setting: target.systolic, below });
     let picture = Picture::new(held, target, colour, depth, level);
-    match (target.systolic.super_buffer, level) {
+    // Lanes keep no stencil values.
+    match (target.systolic.super_buffer, level.filter(|_| !picture.depth.stencil.is_kept())) {
         (false, Some(level)) => Run::begin(Array::new(width, rules, level), picture, waves, stop).array(),
         (false, None) => Run::begin(Elements::new(width, rules), picture, waves, stop).array(),
         (true, Some(level)) => Run::begin(SuperBuffer::new(width, below, level), picture, waves, stop).super_buffer(),
@@ -88,6 +89,7 @@ impl<'a, 'w, M: Machine> Run<'a, 'w, M> {
         let (width, height) = (picture.target.colour.width, picture.target.colour.height);
         for element in 0..width {
             machine.preset(element as usize, picture.initial_depth(element, 0));
+            machine.preset_stencil(element as usize, picture.initial_stencil(element, 0));
         }
         let (clock, refresh, tokens, stopped) = (0, None, 0, None);
         let mut run = Run { machine, picture, waves, clock, width, height, refresh, tokens, stop, stopped };
@@ -113,11 +115,15 @@ impl<'a, 'w, M: Machine> Run<'a, 'w, M> {
 
     /// One clock.
     fn step(&mut self, port: M::Port) {
-        // What the element that the refresh token has come to begins the next line with.
-        let reset = self.refresh.and_then(|(begun, line)| {
+        // The element that the refresh token has come to, and what it begins the next line with.
+        let place = self.refresh.and_then(|(begun, line)| {
             let element = self.clock.checked_sub(begun)?;
-            (element < u64::from(self.width)).then(|| self.picture.initial_depth(element as u32, line + 1))
+            (element < u64::from(self.width)).then_some((element as u32, line + 1))
         });
+        let reset = place.map(|(element, line)| self.picture.initial_depth(element, line));
+        if let Some((element, line)) = place.filter(|_| self.picture.depth.stencil.is_kept()) {
+            self.machine.reset_stencil(self.picture.initial_stencil(element, line));
+        }
         if let Some(waves) = &mut self.waves {
             waves.clock_begins(self.clock, &self.machine, &port);
         }
@@ -151,6 +157,7 @@ impl<'a, 'w, M: Machine> Run<'a, 'w, M> {
             colours: self.picture.colours,
             shaded: self.picture.shaded,
             shading: self.picture.shading.plus(holes),
+            stencil: self.machine.stencil_counts(),
         };
         (counts, self.stopped)
     }
@@ -260,6 +267,11 @@ impl<'a> Picture<'a> {
         self.held.background.depth.or_else(|| self.depth.at(x, y)).unwrap_or(self.target.depth_format.maximum() as i32)
     }
 
+    /// Stencil value of pixel (`x`, `y`) before the scene, if it asks for any.
+    fn initial_stencil(&self, x: u32, y: u32) -> u8 {
+        self.held.background.stencil.unwrap_or_else(|| self.depth.stencil.at(x, y))
+    }
+
     /// The next pixel on the buses.
     fn put(&mut self, pixel: &Pixel) {
         let [x, y] = self.place;
@@ -271,6 +283,7 @@ impl<'a> Picture<'a> {
         if self.depth.pitch != 0 {
             self.depth.rows[y as usize * self.depth.pitch + x as usize] = pixel.depth;
         }
+        self.depth.stencil.put(x, y, pixel.stencil);
         self.place = [x + 1, y];
         if x + 1 == self.target.colour.width {
             self.finish_line(y);

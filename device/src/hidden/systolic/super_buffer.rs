@@ -13,9 +13,10 @@
 
 use super::Machine;
 use super::array::{Halves, has, load, refresh, relation};
-use super::element::compare;
+use super::element::{StencilPart, compare};
 use super::tape::{Fixed, LANES, Tape};
 use super::token::{Beat, Luminance, Pixel, Token, control};
+use crate::hidden::stencil::{StencilCounts, StencilRule};
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, i32x16, u32x16};
 
@@ -36,12 +37,22 @@ pub struct Slot {
     pub range: [i32; 2],
     /// CTRL, as the array has it at T3.
     pub control: u32,
+    /// What becomes of stencil values.
+    pub d: StencilRule,
 }
 
 impl Slot {
     /// A refresh token: inside nowhere.
-    pub const REFRESH: Slot =
-        Slot { first: 1, last: 0, z: 0, dz: 0, luminance: 0, range: [0, 0], control: control::T3 | control::REFRESH };
+    pub const REFRESH: Slot = Slot {
+        first: 1,
+        last: 0,
+        z: 0,
+        dz: 0,
+        luminance: 0,
+        range: [0, 0],
+        control: control::T3 | control::REFRESH,
+        d: StencilRule::Keep,
+    };
 }
 
 impl From<&Token> for Slot {
@@ -54,6 +65,7 @@ impl From<&Token> for Slot {
             luminance: token.luminance.unwrap_or_default().encode().1,
             range: token.range,
             control: token.control(),
+            d: token.stencil,
         }
     }
 }
@@ -69,6 +81,8 @@ pub struct Element {
     pub depth: i32,
     /// Ib.
     pub luminance: Luminance,
+    /// Stencil value, in a scene that asks for any.
+    pub stencil: u8,
 }
 
 /// A Super Buffer, element by element.
@@ -77,13 +91,14 @@ pub struct Specification {
     /// The elements, leftmost first.
     pub elements: Vec<Element>,
     below: u32,
+    stencil: StencilPart,
 }
 
 impl Specification {
     /// `count` elements that hold nothing; depths have `below` bits below the point.
     #[must_use]
     pub fn new(count: u32, below: u32) -> Specification {
-        Specification { elements: vec![Element::default(); count as usize], below }
+        Specification { elements: vec![Element::default(); count as usize], below, stencil: StencilPart::default() }
     }
 }
 
@@ -97,12 +112,16 @@ impl Machine for Specification {
             element.slot = input;
             element.back = before.get(number + 1).and_then(|right| right.back);
             if input.control & control::REFRESH != 0 {
-                element.back = Some(Pixel { luminance: element.luminance, depth: element.depth });
+                let Element { luminance, depth, stencil, .. } = *element;
+                element.back = Some(Pixel { luminance, depth, stencil });
                 element.luminance = Luminance::Background;
                 element.depth = reset;
+                element.stencil = self.stencil.reset;
             } else if input.control != 0 && (input.first..=input.last).contains(&(number as u32)) {
-                let beat = Beat { b: u64::from(input.luminance), c: input.range, control: input.control, a: 0 };
-                compare(&beat, input.z, self.below, &mut element.depth, &mut element.luminance);
+                let (b, c, control) = (u64::from(input.luminance), input.range, input.control);
+                let beat = Beat { a: 0, b, c, control, d: input.d };
+                let mine = (&mut element.depth, &mut element.luminance, &mut element.stencil);
+                compare(&beat, input.z, self.below, mine, &mut self.stencil.counts);
                 element.slot.z = input.z.wrapping_add(input.dz);
             }
         }
@@ -111,6 +130,18 @@ impl Machine for Specification {
 
     fn preset(&mut self, element: usize, depth: i32) {
         self.elements[element].depth = depth;
+    }
+
+    fn preset_stencil(&mut self, element: usize, value: u8) {
+        self.elements[element].stencil = value;
+    }
+
+    fn reset_stencil(&mut self, value: u8) {
+        self.stencil.reset = value;
+    }
+
+    fn stencil_counts(&self) -> StencilCounts {
+        self.stencil.counts
     }
 
     fn signals(&self, element: usize, _port: &Slot) -> Vec<u64> {
@@ -193,10 +224,12 @@ impl SuperBuffer {
                 luminance: word(moving::LUMINANCE),
                 range: [word(moving::MINIMUM) as i32, word(moving::MAXIMUM) as i32],
                 control: word(moving::CONTROL),
+                d: StencilRule::Keep,
             },
             back: self.back[self.back_head + element],
             depth: self.kept.word(staying::DEPTH, element) as i32,
             luminance: Luminance::decode(kind, self.kept.word(staying::LUMINANCE, element)),
+            stencil: 0,
         }
     }
 

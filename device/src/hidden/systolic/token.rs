@@ -17,8 +17,10 @@
 //! the range that depths are clamped to (port C), the outcomes that pass (less, equal, greater) and whether
 //! depth and colour are written. The two bits that name the beat travel too, so that a token can enter on
 //! any clock; the published array takes them from a clock with three phases. [`super::gates`] shows what
-//! each costs.
+//! each costs. A token of a draw with a stencil test has that test on a port D at T3, and a stencil value comes out beside
+//! the depth: only scenes that ask for one have elements with a register for it.
 
+use crate::hidden::stencil::StencilRule;
 use crate::hidden::z_buffer::DepthTest;
 use zga_abi::format::{EndTest, TokenPorts};
 use zga_firmware::checked::SystolicSetting;
@@ -96,6 +98,8 @@ pub struct Pixel {
     pub luminance: Luminance,
     /// On the depth bus, which a card without a Z buffer does not have.
     pub depth: i32,
+    /// Beside it, in a scene that asks for stencil values.
+    pub stencil: u8,
 }
 
 /// A plane segment.
@@ -115,6 +119,8 @@ pub struct Token {
     pub test: DepthTest,
     /// I; `None` leaves Ib alone.
     pub luminance: Option<Luminance>,
+    /// What becomes of stencil values.
+    pub stencil: StencilRule,
 }
 
 /// What stands on the ports between two elements for one clock. The default is a bubble.
@@ -128,14 +134,16 @@ pub struct Beat {
     pub c: [i32; 2],
     /// CTRL.
     pub control: u32,
+    /// Port D: what becomes of stencil values.
+    pub d: StencilRule,
 }
 
 impl Beat {
     /// A refresh token: no element counts its X down to 0, each answers at T3.
     pub const REFRESH: [Beat; 3] = [
-        Beat { a: u64::MAX, b: 0, c: [0, 0], control: control::T1 },
-        Beat { a: 0, b: 0, c: [0, 0], control: control::T2 },
-        Beat { a: 0, b: 0, c: [0, 0], control: control::T3 | control::REFRESH },
+        Beat { a: u64::MAX, b: 0, c: [0, 0], control: control::T1, d: StencilRule::Keep },
+        Beat { a: 0, b: 0, c: [0, 0], control: control::T2, d: StencilRule::Keep },
+        Beat { a: 0, b: 0, c: [0, 0], control: control::T3 | control::REFRESH, d: StencilRule::Keep },
     ];
 }
 
@@ -164,10 +172,11 @@ impl Token {
             TokenPorts::Merged => (x | (dx << 32), 0),
         };
         let (_, luminance) = self.luminance.unwrap_or_default().encode();
+        let (z, control) = (self.z as u64, self.control());
         [
-            Beat { a, b, c: [0, 0], control: control::T1 },
-            Beat { a: self.z as u64, b: self.dz as u64, c: [0, 0], control: control::T2 },
-            Beat { a: self.z as u64, b: u64::from(luminance), c: self.range, control: self.control() },
+            Beat { a, b, control: control::T1, ..Beat::default() },
+            Beat { a: z, b: self.dz as u64, control: control::T2, ..Beat::default() },
+            Beat { a: z, b: u64::from(luminance), c: self.range, control, d: self.stencil },
         ]
     }
 }

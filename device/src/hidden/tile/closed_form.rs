@@ -21,6 +21,7 @@ use crate::geometry::plane::Axis;
 use crate::geometry::triangle::Triangle;
 use crate::geometry::{PIXEL, ScreenVertex};
 use crate::hidden::held::Background;
+use crate::hidden::stencil::StencilCounts;
 use crate::shading::pixel::ShadingCounts;
 use zga_firmware::checked::{Rectangle, Target};
 
@@ -33,6 +34,8 @@ pub struct PixelCounts {
     pub shaded: u64,
     /// What they cost beyond interpolated colours.
     pub shading: ShadingCounts,
+    /// Events of stencil tests.
+    pub stencil: StencilCounts,
 }
 
 /// Sums of a scene's primitives.
@@ -133,6 +136,7 @@ impl Sorts {
             spans: pixels.spans,
             shaded: pixels.shaded,
             shading: pixels.shading,
+            stencil: pixels.stencil,
             ..SortCounts::default()
         };
         let mut live = 0_u32;

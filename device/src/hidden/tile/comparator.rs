@@ -11,8 +11,9 @@
 //! * the ratios are exact: numerators of edge functions over the polygon's doubled area, which is kept
 //!   once with its vertices. Coverage *is* their signs, with the top-left rule where one is 0. Of a line
 //!   they divide its major axis;
-//! * window, stencil and shadow are bits of the register ([`super::storage`]) that nothing drives until
-//!   an effect is called that does.
+//! * the stencil value is tested and changed by the rule that every path shares ([`crate::hidden::stencil`]), and the
+//!   shadow bit follows from it when the tile is written out; window is a bit of the register ([`super::storage`]) that
+//!   nothing drives.
 //!
 //! Clocks: 3 a polygon, for the set-up; see [`super::clocks`].
 
@@ -20,6 +21,7 @@ use crate::geometry::line::Line;
 use crate::geometry::plane::{Axis, DepthPlane};
 use crate::geometry::triangle::doubled_area;
 use crate::geometry::{CENTRE, PIXEL, ScreenVertex};
+use crate::hidden::stencil::{StencilCounts, StencilRule};
 use crate::hidden::z_buffer::DepthTest;
 use crate::shading::plane::ColourPlane;
 use zga_firmware::checked::Rectangle;
@@ -38,6 +40,8 @@ pub type Ratios = [i64; 3];
 pub struct Comparator {
     /// Polygon seen, or [`NONE`].
     pub id: Slot,
+    /// Stencil value; 0 in a scene that does not ask for any.
+    pub stencil: u8,
     /// Depth.
     pub depth: i32,
     /// Division ratios of the polygon seen.
@@ -154,6 +158,8 @@ pub struct SetUp<'h> {
     pub area: Rectangle,
     /// Depth.
     pub depth: DepthRule,
+    /// Stencil value.
+    pub stencil: StencilRule,
     /// Its colour is drawn: it becomes the polygon seen where it passes.
     pub seen: bool,
     /// What knows the holes of its texture, where that has any.
@@ -168,27 +174,31 @@ pub struct Array {
     width: usize,
     /// Pixels of the tile that are on the screen.
     pixels: Rectangle,
+    /// Events of stencil tests.
+    pub tests: StencilCounts,
 }
 
 impl Array {
     /// An array for tiles of `tile` pixels.
     #[must_use]
     pub fn new(tile: [u32; 2]) -> Array {
-        let none = Comparator { id: NONE, depth: 0, ratios: [0; 3] };
+        let none = Comparator { id: NONE, stencil: 0, depth: 0, ratios: [0; 3] };
         Array {
             comparators: vec![none; (tile[0] * tile[1]) as usize],
             width: tile[0] as usize,
             pixels: Rectangle { x: 0, y: 0, right: 0, bottom: 0 },
+            tests: StencilCounts::default(),
         }
     }
 
-    /// Begins a tile that shows `pixels`, with the depth that `depth` gives for a column and row.
-    pub fn reset(&mut self, pixels: Rectangle, depth: impl Fn(u32, u32) -> i32) {
+    /// Begins a tile that shows `pixels`, with the depth and stencil value that `before` gives for a column and row.
+    pub fn reset(&mut self, pixels: Rectangle, before: impl Fn(u32, u32) -> (i32, u8)) {
         self.pixels = pixels;
         for y in pixels.y..pixels.bottom {
             for x in pixels.x..pixels.right {
                 let place = self.place(x, y);
-                self.comparators[place] = Comparator { id: NONE, depth: depth(x, y), ratios: [0; 3] };
+                let (depth, stencil) = before(x, y);
+                self.comparators[place] = Comparator { id: NONE, stencil, depth, ratios: [0; 3] };
             }
         }
     }
@@ -211,19 +221,19 @@ impl Array {
                 }
                 let place = self.place(x, y);
                 let mine = &mut self.comparators[place];
-                match polygon.depth {
-                    DepthRule::Keep => {}
-                    DepthRule::Store(depth) => mine.depth = depth,
+                let held = mine.depth;
+                let (passes, stores) = match polygon.depth {
+                    DepthRule::Keep => (true, None),
+                    DepthRule::Store(depth) => (true, Some(depth)),
                     DepthRule::Test(test, plane, below) => {
                         let depth = plane.stored(plane.value(column, row), below);
-                        if !test.passes(depth, mine.depth) {
-                            continue;
-                        }
-                        if test.write {
-                            mine.depth = depth;
-                        }
+                        (test.passes(depth, held), test.write.then_some(depth))
                     }
+                };
+                if !polygon.stencil.decide(&mut mine.stencil, &mut self.tests, || passes) {
+                    continue;
                 }
+                mine.depth = stores.unwrap_or(held);
                 if polygon.seen {
                     mine.ratios = ratios;
                     won.push(place);

@@ -80,6 +80,7 @@ pub mod y_sort;
 mod tests;
 
 use super::held::Background;
+use super::stencil::StencilCounts;
 use crate::probe::account::{Account, Clocks};
 use crate::shading::pixel::ShadingCounts;
 use zga_abi::Counter;
@@ -118,6 +119,8 @@ pub struct SortCounts {
     pub shaded: u64,
     /// What they cost beyond interpolated colours.
     pub shading: ShadingCounts,
+    /// Events of stencil tests.
+    pub stencil: StencilCounts,
     /// Clocks of the unit, the interpolators' left out.
     pub clocks: u64,
 }
@@ -143,6 +146,7 @@ pub fn charge(counts: &SortCounts, account: &mut Account) {
     account.charge(Counter::CyclesTile, Clocks(counts.clocks));
     account.charge(Counter::CyclesShading, Clocks(counts.shaded));
     counts.shading.charge(account);
+    counts.stencil.charge(account);
 }
 
 /// How a target is cut into tiles.

@@ -20,6 +20,7 @@ use crate::geometry::assembly::Shape;
 use crate::geometry::plane::below;
 use crate::geometry::triangle::Triangle;
 use crate::hidden::held::{Background, Depths, Held, Item};
+use crate::hidden::stencil::{StencilRows, StencilRule};
 use crate::hidden::z_buffer::specification::colour_plane;
 use crate::probe::account::Clocks;
 use zga_abi::format::DepthFormat;
@@ -35,7 +36,7 @@ pub fn draw_until(
     depth: Depths<'_>,
     stop: &dyn Fn(Clocks) -> Option<Stopped>,
 ) -> (SortCounts, Option<Stopped>) {
-    let (Depths { rows: depth, pitch: depth_pitch }, grid) = (depth, Grid::new(target));
+    let (Depths { rows: depth, pitch: depth_pitch, stencil }, grid) = (depth, Grid::new(target));
     let mut y_sort = YSort::new(grid);
     for item in &held.items {
         y_sort.insert(item, Extent::new(held, item));
@@ -49,6 +50,7 @@ pub fn draw_until(
         held,
         format: target.depth_format,
         memory: Memory { colour, surface: target.colour, depth, depth_pitch },
+        stencil,
         array: Array::new(target.tile),
         interpolator: Interpolator::new(held, target.tile),
         colour_buffer: ColourBuffer::default(),
@@ -86,6 +88,8 @@ struct Unit<'h, 'm> {
     held: &'h Held,
     format: DepthFormat,
     memory: Memory<'m>,
+    /// The stencil plane, if the scene asks for it.
+    stencil: StencilRows<'m>,
     array: Array,
     interpolator: Interpolator<'h>,
     colour_buffer: ColourBuffer,
@@ -106,15 +110,24 @@ impl<'h> Unit<'h, '_> {
     /// Draws a tile into one bank while the other is written out.
     fn tile(&mut self, column: usize, pixels: Rectangle, x_sort: &mut XSort, polygons: &[Polygon<'h>]) {
         let (memory, background, format) = (&self.memory, &self.held.background, self.format);
-        self.array.reset(pixels, |x, y| match background.depth {
-            Some(depth) => depth,
-            None if memory.depth_pitch != 0 => memory.depth_at(x, y),
-            None => format.maximum() as i32,
+        let stencil = &self.stencil;
+        self.array.reset(pixels, |x, y| {
+            let depth = match background.depth {
+                Some(depth) => depth,
+                None if memory.depth_pitch != 0 => memory.depth_at(x, y),
+                None => format.maximum() as i32,
+            };
+            (depth, background.stencil.unwrap_or_else(|| stencil.at(x, y)))
         });
         let walked = x_sort.walk(column, polygons, |address, polygon| {
             self.tiles[address as usize] += 1;
             self.polygon(polygon.item, &pixels);
         });
+        if self.stencil.is_kept() {
+            for (x, y) in (pixels.y..pixels.bottom).flat_map(|y| (pixels.x..pixels.right).map(move |x| (x, y))) {
+                self.stencil.put(x, y, self.array.at(x, y).stencil);
+            }
+        }
         let won = self.colours(pixels);
         self.colour_buffer.write_out(&mut self.memory);
         self.colour_buffer.swap();
@@ -165,14 +178,16 @@ impl<'h> Unit<'h, '_> {
                     depth: draw.test.map_or(DepthRule::Keep, |test| {
                         DepthRule::Test(test, shape.plane(self.format), below(self.format))
                     }),
-                    seen: true,
+                    stencil: draw.stencil_rule(shape),
+                    seen: draw.draws_colours(),
                     holes: draw.has_holes().then(|| colour_plane(shape, &draw.shade())),
                 }
             }
-            Item::Clear { area, colour, depth } => SetUp {
+            Item::Clear { area, colour, depth, stencil } => SetUp {
                 coverage: Coverage::Everywhere,
                 area: *area,
                 depth: depth.map_or(DepthRule::Keep, DepthRule::Store),
+                stencil: stencil.map_or(StencilRule::Keep, StencilRule::Store),
                 seen: colour.is_some(),
                 holes: None,
             },
@@ -205,7 +220,8 @@ impl<'h> Unit<'h, '_> {
         self.colour_buffer.write_out(&mut self.memory);
         self.counts.fragments_not_stored = self.tiles.iter().map(|tiles| tiles.saturating_sub(1)).sum();
         let Schedule { reads, writes, colours, .. } = self.schedule;
-        SortCounts { reads, writes, colours, clocks: self.schedule.clocks(), ..self.counts }
+        let stencil = self.array.tests;
+        SortCounts { reads, writes, colours, stencil, clocks: self.schedule.clocks(), ..self.counts }
     }
 }
 

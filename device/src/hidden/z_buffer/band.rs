@@ -6,9 +6,11 @@
 
 use super::bins::{Bin, Bins};
 use super::punched::Punched;
+use super::stencilled::StencilledPrimitive;
 use super::tile::{TILE, Tile, TileCounts};
 use super::{DepthTest, kernel};
 use crate::geometry::plane::below;
+use crate::hidden::stencil::{StencilRows, Stencilled};
 use crate::hidden::za::band::TileBlocks;
 use crate::pipeline::bands::{Plane, Sight, Surfaces};
 use crate::shading::parameters::Parameters;
@@ -18,7 +20,7 @@ use crate::shading::resolve::{Planes, Row16, Row32, resolve_row};
 use fearless_simd::{Level, Simd, dispatch};
 use std::sync::Arc;
 use zga_abi::format::{DepthFormat, PixelFormat};
-use zga_firmware::checked::Rectangle;
+use zga_firmware::checked::{Rectangle, Stencil};
 
 /// What all bands of a draw share.
 #[derive(Clone, Debug)]
@@ -31,6 +33,8 @@ pub struct Setting {
     pub interpolation: Interpolation,
     /// What interpolated colours go through.
     pub shading: Option<Arc<DrawShading>>,
+    /// Stencil test; `None` where it is not called for.
+    pub stencil: Option<StencilSetting>,
     /// The path takes whole segments: holes of a texture cut them.
     pub cuts_segments: bool,
     /// Pixels that may change, inside the target.
@@ -43,6 +47,15 @@ pub struct Setting {
     pub colour_pitch: usize,
     /// Words from a row of depths to the next.
     pub depth_pitch: usize,
+}
+
+/// A draw's stencil test, and where the values are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StencilSetting {
+    /// The test.
+    pub rule: Stencil,
+    /// Bytes from a row of stencil values to the next.
+    pub pitch: usize,
 }
 
 /// What the colours of a batch of primitives go through.
@@ -96,6 +109,13 @@ impl Setting {
         self.shading.as_ref().map_or(ShadingCounts::default(), |draw| draw.pixel.looked_up(fragments, holes))
     }
 
+    /// Whether pixels that pass get a colour.
+    #[must_use]
+    #[inline(always)]
+    pub fn draws_colours(&self) -> bool {
+        self.stencil.is_none_or(|stencil| !stencil.rule.colour_off)
+    }
+
     /// Whether shading does anything for its pixels.
     #[must_use]
     pub fn is_shaded(&self) -> bool {
@@ -112,7 +132,9 @@ impl Setting {
         surfaces: Surfaces<'_>,
         scratch: &mut Scratch,
     ) -> TileCounts {
-        let Surfaces { colour: Plane { rows: colour, .. }, depth: Plane { rows: depth, .. }, mut sight, .. } = surfaces;
+        let Surfaces { colour, depth, stencil, mut sight, .. } = surfaces;
+        let (Plane { rows: colour, .. }, Plane { rows: depth, .. }) = (colour, depth);
+        let mut values = StencilRows { rows: stencil.rows, pitch: self.stencil.map_or(0, |stencil| stencil.pitch) };
         let top = (band * TILE) as i32;
         let rows = [top.max(self.scissor.y as i32), (top + TILE as i32).min(self.scissor.bottom as i32)];
         let mut total = TileCounts::default();
@@ -137,7 +159,10 @@ impl Setting {
             };
             let mut first = 1;
             for bin in bins() {
-                dispatch!(level, simd => self.draw_bin(simd, bin, first, &mut tile));
+                match &self.stencil {
+                    None => dispatch!(level, simd => self.draw_bin(simd, bin, first, &mut tile)),
+                    Some(stencil) => self.draw_stencilled(&stencil.rule, bin, first, &mut tile, &mut values),
+                }
                 first += bin.len() as u32;
             }
             let counts = tile.counts;
@@ -214,6 +239,41 @@ impl Setting {
                 punched.line(line, tile);
             } else if let Some((point, _)) = bin.points.get(index) {
                 punched.point(point.pixel, point.z, tile);
+            }
+        }
+    }
+
+    /// The same with a stencil test.
+    fn draw_stencilled(
+        &self,
+        rule: &Stencil,
+        bin: &Bin,
+        first: u32,
+        tile: &mut Tile<'_>,
+        values: &mut StencilRows<'_>,
+    ) {
+        let (below, has_holes) = (below(self.format), self.has_holes());
+        for index in 0..bin.len() {
+            let Some(source) = bin.colours(index) else {
+                continue;
+            };
+            let number = bin.numbers.get(index).filter(|_| has_holes);
+            let holes = number.map(|number| ColourPlane::Flat(0).shaded(source.first_place(), &self.shade(*number)));
+            let front = bin.triangles.is_empty() || source.runs_counter_clockwise();
+            let primitive = StencilledPrimitive {
+                stencil: Stencilled { rule: *rule, front },
+                holes: holes.as_ref(),
+                id: first + index as u32,
+                test: self.test,
+                below,
+                cuts: self.cuts_segments && has_holes,
+            };
+            if let Some((triangle, _)) = bin.triangles.get(index) {
+                primitive.triangle(triangle, tile, values);
+            } else if let Some((line, _)) = bin.lines.get(index) {
+                primitive.line(line, tile, values);
+            } else if let Some((point, _)) = bin.points.get(index) {
+                primitive.point(point.pixel, point.z, tile, values);
             }
         }
     }

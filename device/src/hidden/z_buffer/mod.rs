@@ -4,8 +4,9 @@
 //! passes; clears. Inputs: set-up primitives from [`crate::geometry`]. Outputs: frame buffer and
 //! Z buffer in video memory.
 //!
-//! Clocks: 2 a span (edge walk and address), 1 a depth read and compared, 1 a depth and colour
-//! written (one port, 64 bits wide); a clear writes 16 words of one plane a clock.
+//! Clocks: 2 a span (edge walk and address), 1 a stencil value read, compared and put back, 1 a depth read and
+//! compared, 1 a depth and colour written (one port, 64 bits wide), where there is either; a clear writes 64 bytes of one
+//! plane a clock.
 //!
 //! The host goes another way to the same bits and counts: visibility of all primitives of a draw
 //! tile by tile, colours once at the end of a tile, bands of tiles on several threads. [`specification`]
@@ -16,10 +17,13 @@ pub mod bins;
 pub mod kernel;
 pub mod punched;
 pub mod specification;
+pub mod stencilled;
 pub mod tile;
 pub mod uniform;
 
+use super::stencil::{self, StencilCounts};
 use crate::probe::account::{Account, Clocks};
+use std::ops::Range;
 use zga_abi::Counter;
 use zga_abi::format::{DepthFunction, PixelFormat};
 use zga_firmware::checked::{Clear, DepthSurface, Rectangle, Surface, Target};
@@ -88,6 +92,34 @@ pub fn surfaces_of<'m>(
     }
 }
 
+/// Frame buffer, Z buffer and stencil plane of a target as slices of video memory; those that are not there are empty.
+#[must_use]
+pub fn all_surfaces<'m>(memory: &'m mut [u32], target: &Target) -> (&'m mut [u32], &'m mut [i32], &'m mut [u8]) {
+    let height = target.colour.height;
+    let of = |base: u32, pitch: u32| {
+        let [first, beyond] = span(base, pitch, height);
+        first..beyond
+    };
+    let colour = of(target.colour.base, target.colour.pitch);
+    let depth = target.depth.map_or(0..0, |depth| of(depth.base, depth.pitch));
+    let [colour, depth, stencil] = apart(memory, [colour, depth, stencil::words(target)]);
+    (colour, bytemuck::cast_slice_mut(depth), bytemuck::cast_slice_mut(stencil))
+}
+
+/// Ranges of memory as slices. The firmware has checked that they lie apart.
+fn apart<const N: usize>(memory: &mut [u32], ranges: [Range<usize>; N]) -> [&mut [u32]; N] {
+    let mut order: [usize; N] = std::array::from_fn(|k| k);
+    order.sort_unstable_by_key(|&k| (ranges[k].start, ranges[k].end));
+    let mut parts: [&mut [u32]; N] = std::array::from_fn(|_| <&mut [u32]>::default());
+    let (mut rest, mut at) = (memory, 0);
+    for k in order {
+        let (_, after) = rest.split_at_mut(ranges[k].start - at);
+        let (mine, after) = after.split_at_mut(ranges[k].len());
+        (parts[k], rest, at) = (mine, after, ranges[k].end);
+    }
+    parts
+}
+
 /// First word and first word beyond of a surface.
 fn span(base: u32, pitch: u32, height: u32) -> [usize; 2] {
     let (base, pitch) = (base as usize / 4, pitch as usize / 4);
@@ -96,13 +128,18 @@ fn span(base: u32, pitch: u32, height: u32) -> [usize; 2] {
 
 /// Charges the events of a draw.
 pub fn charge(counts: &TileCounts, setting: &Setting, account: &mut Account) {
-    let reads = if setting.test.is_some() { counts.covered } else { 0 };
+    let StencilCounts { tested, failed } = counts.stencil;
+    // What fails the stencil test does not come to the depth test.
+    let reads = if setting.test.is_some() { counts.covered - failed } else { 0 };
+    let depths = if setting.test.is_some_and(|test| test.write) { counts.passed } else { 0 };
+    let colours = if setting.draws_colours() { counts.passed } else { 0 };
     account.add(Counter::ZSpans, counts.spans);
     account.add(Counter::ZReads, reads);
-    account.add(Counter::ZWrites, if setting.test.is_some_and(|test| test.write) { counts.passed } else { 0 });
-    account.add(Counter::ColourWrites, counts.passed);
-    account.charge(Counter::CyclesZBuffer, Clocks(2 * counts.spans + reads + counts.passed));
-    charge_shading(counts.passed, setting, account);
+    account.add(Counter::ZWrites, depths);
+    account.add(Counter::ColourWrites, colours);
+    account.charge(Counter::CyclesZBuffer, Clocks(2 * counts.spans + tested + reads + depths.max(colours)));
+    counts.stencil.charge(account);
+    charge_shading(colours, setting, account);
     setting.looked_up(counts.covered, counts.holes).charge(account);
 }
 
@@ -149,6 +186,9 @@ pub fn clear(memory: &mut [u32], target: &Target, clear: &Clear, uniform: Option
     }
     let (pixels, lines) =
         (u64::from(right - x) * u64::from(bottom - y), u64::from((right - x).div_ceil(16)) * u64::from(bottom - y));
+    if let Some(value) = clear.stencil {
+        account.charge(Counter::CyclesZBuffer, stencil::fill(memory, target, &clear.area, value));
+    }
     let (colours, depths) = surfaces(memory, target);
     if let Some(colour) = clear.colour {
         fill_colour(colours, &target.colour, &clear.area, colour);

@@ -1,22 +1,24 @@
 //! The specification of the Z buffer path: pixel by pixel, everything switched by state.
 //!
 //! Simple and slow on purpose. A triangle is its edge functions and the top-left rule, a fragment is
-//! compared, written and coloured at once, in order of submission. Every fast path must give the
+//! compared (stencil value, then depth), written and coloured at once, in order of submission. Every fast path must give the
 //! same frame buffer, Z buffer and counts, bit for bit.
 
 use super::DepthTest;
-use super::band::Setting;
+use super::band::{Setting, StencilSetting};
 use super::tile::TileCounts;
 use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::Shape;
 use crate::geometry::plane::below;
 use crate::geometry::triangle::doubled_area;
+use crate::hidden::stencil::{Stencilled, is_front};
 use crate::pipeline::bands::Sight;
 use crate::shading::plane::{ColourPlane, ColourSource, Shade};
 use crate::shading::resolve::{PixelRow, Row16, Row32};
 use zga_abi::format::PixelFormat;
 
 /// Draws primitives, each with its number in the draw, on whole surfaces, one after another.
+#[cfg(test)]
 #[must_use]
 pub fn draw<'s>(
     setting: &Setting,
@@ -24,7 +26,7 @@ pub fn draw<'s>(
     colour: &mut [u32],
     depth: &mut [i32],
 ) -> TileCounts {
-    draw_noting(setting, shapes, colour, depth, &mut Sight::none())
+    draw_noting(setting, shapes, colour, depth, &mut [], &mut Sight::none())
 }
 
 /// Draws primitives as [`draw`] does, and notes what a path that shades late keeps.
@@ -34,11 +36,12 @@ pub fn draw_noting<'s>(
     shapes: impl Iterator<Item = (&'s Shape, u32)>,
     colour: &mut [u32],
     depth: &mut [i32],
+    stencil: &mut [u8],
     sight: &mut Sight<'_>,
 ) -> TileCounts {
     let mut counts = TileCounts::default();
     for (shape, number) in shapes {
-        primitive(setting, shape, number, colour, depth, sight, &mut counts);
+        primitive(setting, shape, number, colour, depth, stencil, sight, &mut counts);
     }
     counts
 }
@@ -67,18 +70,20 @@ pub fn meets(shape: &Shape, x: i32, y: i32) -> bool {
     }
 }
 
+#[expect(clippy::too_many_arguments, reason = "the path's memories; a struct would only be taken apart again")]
 fn primitive(
     setting: &Setting,
     shape: &Shape,
     number: u32,
     colour: &mut [u32],
     depth: &mut [i32],
+    stencil: &mut [u8],
     sight: &mut Sight<'_>,
     counts: &mut TileCounts,
 ) {
     let plane = shape.plane(setting.format);
     let colours = colour_plane(shape, &setting.shade(number));
-    let below = below(setting.format);
+    let (below, front) = (below(setting.format), is_front(shape));
     let (rows, columns) = extent(shape, setting);
     for y in rows.0..rows.1 {
         let mut any = false;
@@ -99,17 +104,25 @@ fn primitive(
                 continue;
             }
             let (column, row) = (x as usize, y as usize);
-            if let Some(test) = setting.test {
-                let z = plane.stored(plane.value(x, y), below);
-                let stored = &mut depth[row * setting.depth_pitch + column];
-                if !test.passes(z, *stored) {
-                    continue;
+            let (z, at) = (plane.stored(plane.value(x, y), below), row * setting.depth_pitch + column);
+            let passes = || setting.test.is_none_or(|test| test.passes(z, depth[at]));
+            let drawn = match &setting.stencil {
+                None => passes(),
+                Some(StencilSetting { rule, pitch }) => {
+                    let stored = &mut stencil[row * pitch + column];
+                    Stencilled { rule: *rule, front }.decide(stored, &mut counts.stencil, passes)
                 }
-                if test.write {
-                    *stored = z;
-                }
+            };
+            if !drawn {
+                continue;
+            }
+            if setting.test.is_some_and(|test| test.write) {
+                depth[at] = z;
             }
             counts.passed += 1;
+            if !setting.draws_colours() {
+                continue;
+            }
             sight.note(setting, column, row);
             put(
                 setting,

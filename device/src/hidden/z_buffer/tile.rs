@@ -5,6 +5,7 @@ use super::kernel::{LESS, NO_DEPTH};
 use crate::geometry::line::Line;
 use crate::geometry::plane::Axis;
 use crate::geometry::triangle::WALK;
+use crate::hidden::stencil::StencilCounts;
 use crate::pipeline::bands::Counts;
 
 /// Width and height of a tile in pixels.
@@ -17,10 +18,12 @@ pub struct TileCounts {
     pub spans: u64,
     /// Fragments: pixels covered inside the scissor.
     pub covered: u64,
-    /// Fragments that passed the depth test.
+    /// Fragments that passed the stencil test, if there is one, and the depth test.
     pub passed: u64,
     /// Fragments that were holes of their texture.
     pub holes: u64,
+    /// Of draws with a stencil test: its events.
+    pub stencil: StencilCounts,
     /// First row and first row beyond where something was covered, pixels.
     pub touched: [i32; 2],
 }
@@ -34,6 +37,7 @@ impl TileCounts {
             covered: self.covered + other.covered,
             passed: self.passed + other.passed,
             holes: self.holes + other.holes,
+            stencil: self.stencil.plus(other.stencil),
             touched: self.touched,
         }
     }

@@ -27,6 +27,9 @@
 //! the word that was fetched; a running maximum that starts at 0. What is done between two clocks (choosing
 //! the next block, stepping over rows that cover nothing) is wiring.
 //!
+//! Where there is a stencil test a pixel of the run stays a clock longer in its state: the first is the stencil value's,
+//! which is compared and put back, and whose verdict the second takes.
+//!
 //! Must equal [`super::specification`] in pixels, depths, words and each count, clocks included.
 
 use super::memory::put;
@@ -35,6 +38,8 @@ use super::walk::{Run, Walker};
 use super::{Surfaces, ZaCounts, ZaDraw};
 use crate::geometry::assembly::Shape;
 use crate::geometry::plane::DepthPlane;
+use crate::hidden::stencil::{Stencilled, is_front};
+use crate::hidden::z_buffer::band::StencilSetting;
 use crate::hidden::z_buffer::specification::colour_plane;
 use crate::shading::plane::{AffinePlane, ColourPlane};
 use zga_abi::format::ZaPrediction;
@@ -116,6 +121,8 @@ pub struct Unit<'d> {
     depths: Predictor,
     colours: Colours,
     is_triangle: bool,
+    /// The side that is seen.
+    front: bool,
     walker: Walker,
     /// The walker's next row.
     next: Option<Run>,
@@ -131,6 +138,8 @@ pub struct Unit<'d> {
     x: i32,
     y: i32,
     maximum: i32,
+    /// What the stencil test has said of the pixel visited, depth test and all.
+    verdict: Option<bool>,
     /// What the gradients add to the prediction at most: their negative parts along the block or run.
     slack: [i128; 2],
     /// Prediction of the rows looked at.
@@ -149,6 +158,7 @@ impl<'d> Unit<'d> {
             depths: Predictor { plane, steep: false, below: 0 },
             colours: Colours::Divided(ColourPlane::Flat(0)),
             is_triangle: false,
+            front: true,
             walker: Walker::default(),
             next: None,
             table: Vec::new(),
@@ -159,6 +169,7 @@ impl<'d> Unit<'d> {
             x: 0,
             y: 0,
             maximum: 0,
+            verdict: None,
             slack: [0; 2],
             nearest: 0,
         }
@@ -182,6 +193,7 @@ impl<'d> Unit<'d> {
             plane => Colours::Divided(plane),
         };
         self.is_triangle = matches!(shape, Shape::Triangle(..));
+        self.front = is_front(shape);
         self.walker = Walker::new(shape, &self.draw.pixels.scissor);
         self.next = self.walker.next();
         self.next_row_of_blocks();
@@ -460,7 +472,6 @@ impl<'d> Unit<'d> {
             Colours::Divided(plane) => plane.colour(self.x, self.y),
         };
         self.put(self.draw.pixels.pixel_format.encode(colour.to_le_bytes()), surfaces);
-        self.counts.passed += 1;
     }
 
     /// Whether the pixel visited is a hole of the texture.
@@ -494,20 +505,45 @@ impl<'d> Unit<'d> {
         self.table[row] = registers;
     }
 
+    /// The stencil value's clock, before the pixel's own; returns whether this one was it.
+    fn test_stencil(&mut self, row: Option<usize>, stored: i32, surfaces: &mut Surfaces<'_>) -> bool {
+        let (Some(StencilSetting { rule, pitch }), Some(row)) = (self.draw.pixels.stencil, row) else {
+            return false;
+        };
+        if self.verdict.is_some() || self.is_hole() {
+            return false;
+        }
+        let z = self.depth(row);
+        let passes = || self.draw.test().is_none_or(|test| test.passes(z, stored));
+        let value = &mut surfaces.stencil[self.y as usize * pitch + self.x as usize];
+        let stencilled = Stencilled { rule, front: self.front };
+        self.verdict = Some(stencilled.decide(value, &mut self.counts.stencil, passes));
+        true
+    }
+
+    /// Whether the run's pixel, in table row `row`, passes against `stored`. Takes the stencil test's verdict, where there
+    /// is one.
+    fn passes(&mut self, row: usize, stored: i32) -> bool {
+        let verdict = self.verdict.take();
+        let depth = || self.draw.test().is_none_or(|test| test.passes(self.depth(row), stored));
+        !self.is_hole() && verdict.unwrap_or_else(depth)
+    }
+
     fn initialise_pixel(&mut self, surfaces: &mut Surfaces<'_>) {
         let background = self.draw.background;
         let mut depth = background.depth;
         let row = self.row_here();
+        if self.test_stencil(row, depth, surfaces) {
+            return;
+        }
         self.count_fragment(row);
-        let passing = row.filter(|&row| self.draw.test().is_none_or(|test| test.passes(self.depth(row), depth)));
-        let passing = passing.filter(|_| !self.is_hole());
-        match passing {
-            Some(row) => {
-                if self.draw.test().is_some_and(|test| test.write) {
-                    depth = self.depth(row);
-                }
-                self.write_colour(row, surfaces);
-            }
+        let passing = row.filter(|&row| self.passes(row, depth));
+        if let Some(row) = passing.filter(|_| self.draw.test().is_some_and(|test| test.write)) {
+            depth = self.depth(row);
+        }
+        self.counts.passed += u64::from(passing.is_some());
+        match passing.filter(|_| self.draw.pixels.draws_colours()) {
+            Some(row) => self.write_colour(row, surfaces),
             None => self.put(background.pixel, surfaces),
         }
         if self.draw.depth_buffer {
@@ -523,16 +559,21 @@ impl<'d> Unit<'d> {
         self.next_pixel(State::InitialisePixel);
     }
 
-    fn read_pixel(&mut self, surfaces: &Surfaces<'_>) {
+    fn read_pixel(&mut self, surfaces: &mut Surfaces<'_>) {
         let stored = surfaces.depth[self.place()];
-        self.counts.reads += 1;
         let row = self.row_here();
+        if self.test_stencil(row, stored, surfaces) {
+            return;
+        }
+        self.counts.reads += 1;
         self.count_fragment(row);
         if let Some(row) = row {
-            let z = self.depth(row);
-            if self.draw.test().is_some_and(|test| test.passes(z, stored)) && !self.is_hole() {
-                self.state = State::WritePixel;
-                return;
+            if self.passes(row, stored) {
+                self.counts.passed += 1;
+                if self.draw.pixels.draws_colours() || self.draw.test().is_some_and(|test| test.write) {
+                    self.state = State::WritePixel;
+                    return;
+                }
             }
             self.step_one(row);
         }
@@ -544,11 +585,18 @@ impl<'d> Unit<'d> {
         let test = self.draw.test();
         // The run's pixels only come here.
         let row = self.row_here();
+        // With a depth test the pixel has passed already.
+        let mut passed = true;
         if test.is_none() {
+            if self.test_stencil(row, 0, surfaces) {
+                return;
+            }
             self.count_fragment(row);
+            passed = row.is_some_and(|row| self.passes(row, 0));
+            self.counts.passed += u64::from(passed);
         }
         if let Some(row) = row {
-            if !self.is_hole() {
+            if passed && self.draw.pixels.draws_colours() {
                 self.write_colour(row, surfaces);
             }
             if test.is_some_and(|test| test.write) {

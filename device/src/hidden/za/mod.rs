@@ -34,6 +34,11 @@
 //!   of the run are compared and written if they win, all feed the running maximum, which becomes the word.
 //!   If depth is not written only the run is read and compared; the word stays.
 //!
+//! With a stencil test a fragment that is no hole is tested before its depth is; its verdict takes the place of the depth
+//! test's above, and no block is bypassed whose fragments would change stencil values by failing. Where colours are off a
+//! fragment that passes leaves the pixel its colour, and in a cleared block the background. Stencil values lie in memory
+//! always: no Za word stands for them.
+//!
 //! Pixels of edge blocks that lie off the screen never count. Without a Z buffer an initialised block's
 //! word is the greatest depth there is.
 //!
@@ -48,7 +53,8 @@
 //! | 1 + rows | prediction plane | the near end of each row before |
 //! | 1 | a pixel initialised | colour and depth are written side by side |
 //! | 1 | a depth read and compared, a pixel painted | one port |
-//! | 1 | a pixel that wins | colour and depth are written side by side |
+//! | 1 | a stencil value read, compared and put back | one port |
+//! | 1 | a pixel that wins, if anything of it is written | colour and depth are written side by side |
 //! | 1 | a word written | |
 //! | 1 | 16 words of a logical clear | a line of 64 bytes |
 //!
@@ -89,6 +95,7 @@ mod walk;
 
 pub use grid::Grid;
 
+use super::stencil::StencilCounts;
 use super::z_buffer::band::Setting;
 use super::z_buffer::{DepthTest, charge_shading};
 use crate::pipeline::bands::Counts;
@@ -133,11 +140,14 @@ impl ZaDraw {
         self.pixels.test.filter(|_| self.depth_buffer)
     }
 
-    /// Whether blocks can be bypassed: not where a farther pixel could win, as it may behind everything.
+    /// Whether blocks can be bypassed: not where a farther pixel could win, as it may behind everything, nor where one that
+    /// loses would leave its mark on the stencil plane.
     #[must_use]
     #[inline(always)]
     pub fn may_bypass(&self) -> bool {
-        self.bypass && self.test().is_some_and(|test| !test.greater)
+        self.bypass
+            && self.test().is_some_and(|test| !test.greater)
+            && self.pixels.stencil.is_none_or(|stencil| !stencil.rule.marks_failures())
     }
 
     /// The word of an initialised block of which no depth is known to be nearer than the background's:
@@ -157,6 +167,8 @@ pub struct Surfaces<'m> {
     pub depth: &'m mut [i32],
     /// Za words of the frame, one a block.
     pub words: &'m mut [i32],
+    /// Stencil values; empty where no stencil test is called for.
+    pub stencil: &'m mut [u8],
 }
 
 /// Events of a draw.
@@ -168,7 +180,9 @@ pub struct ZaCounts {
     pub fragments: u64,
     /// Fragments among them that were holes.
     pub holes: u64,
-    /// Fragments that passed the depth test.
+    /// Events of the stencil test.
+    pub stencil: StencilCounts,
+    /// Fragments that passed stencil and depth test.
     pub passed: u64,
     /// Visits of cleared blocks.
     pub initialised: u64,
@@ -198,6 +212,7 @@ impl ZaCounts {
             spans: self.spans + other.spans,
             fragments: self.fragments + other.fragments,
             holes: self.holes + other.holes,
+            stencil: self.stencil.plus(other.stencil),
             passed: self.passed + other.passed,
             initialised: self.initialised + other.initialised,
             bypassed: self.bypassed + other.bypassed,
@@ -238,12 +253,12 @@ impl ZaCounts {
     }
 
     /// Counts the visit of an initialised block without a depth test: `run` covered pixels, of which `painted` are no
-    /// holes.
+    /// holes and passed; these are written if there are `colours`.
     #[inline(always)]
-    pub fn count_painted(&mut self, run: u64, painted: u64) {
+    pub fn count_painted(&mut self, run: u64, painted: u64, colours: bool) {
         self.compared += 1;
         self.passed += painted;
-        self.colour_writes += painted;
+        self.colour_writes += if colours { painted } else { 0 };
         self.clocks += 1 + run;
     }
 
@@ -251,15 +266,16 @@ impl ZaCounts {
     /// `passed` won, or all `pixels` of the block where depth is written. `prediction` clocks were spent
     /// in vain.
     #[inline(always)]
-    pub fn count_compared(&mut self, write: bool, pixels: u64, run: u64, passed: u64, prediction: u64) {
+    pub fn count_compared(&mut self, write: bool, pixels: u64, run: u64, passed: u64, prediction: u64, colours: bool) {
         let reads = if write { pixels } else { run };
         self.compared += 1;
         self.passed += passed;
         self.reads += reads;
         self.depth_writes += if write { passed } else { 0 };
-        self.colour_writes += passed;
+        self.colour_writes += if colours { passed } else { 0 };
         self.words_written += u64::from(write);
-        self.clocks += 1 + prediction + reads + passed + u64::from(write);
+        let written = if colours || write { passed } else { 0 };
+        self.clocks += 1 + prediction + reads + written + u64::from(write);
     }
 }
 
@@ -281,6 +297,7 @@ pub fn charge(counts: &ZaCounts, draw: &ZaDraw, account: &mut Account) {
     account.add(Counter::ZaPixelsBypassed, counts.pixels_bypassed);
     account.add(Counter::ZaBlocksCompared, counts.compared);
     account.charge(Counter::CyclesZa, Clocks(counts.clocks));
-    charge_shading(counts.passed, &draw.pixels, account);
+    counts.stencil.charge(account);
+    charge_shading(if draw.pixels.draws_colours() { counts.passed } else { 0 }, &draw.pixels, account);
     draw.pixels.looked_up(counts.fragments, counts.holes).charge(account);
 }

@@ -8,7 +8,9 @@ use super::memory::{maximum, put};
 use super::prediction::{Predictor, RowRun, clocks};
 use super::{Surfaces, ZaCounts, ZaDraw, grid};
 use crate::geometry::assembly::Shape;
+use crate::hidden::stencil::{Stencilled, is_front};
 use crate::hidden::z_buffer::DepthTest;
+use crate::hidden::z_buffer::band::StencilSetting;
 use crate::hidden::z_buffer::specification::{colour_plane, extent, meets};
 use crate::shading::plane::ColourPlane;
 use zga_firmware::checked::Rectangle;
@@ -32,6 +34,7 @@ fn primitive(draw: &ZaDraw, shape: &Shape, number: u32, surfaces: &mut Surfaces<
     let primitive = Primitive {
         colours: colour_plane(shape, &draw.pixels.shade(number)),
         depths: Predictor::new(shape, draw.pixels.format),
+        front: is_front(shape),
     };
     let ((top, bottom), (left, right)) = extent(shape, &draw.pixels);
     if top >= bottom || left >= right {
@@ -60,10 +63,11 @@ fn primitive(draw: &ZaDraw, shape: &Shape, number: u32, surfaces: &mut Surfaces<
     }
 }
 
-/// A primitive's colours and depths.
+/// A primitive's colours and depths, and whether its front is seen.
 struct Primitive {
     colours: ColourPlane,
     depths: Predictor,
+    front: bool,
 }
 
 impl Primitive {
@@ -87,17 +91,16 @@ fn visit(
     if surfaces.words[index] < 0 {
         count_looked_up(draw, primitive, run, counts);
         fill_with_background(draw, area, surfaces);
-        let passed = match draw.test() {
-            None => paint(draw, primitive, run, surfaces),
-            Some(test) => compare(draw, primitive, test, run, surfaces),
-        };
+        let passed = compare(draw, primitive, draw.test(), run, surfaces, counts);
         surfaces.words[index] = word(draw, area, surfaces);
         counts.count_initialised(pixels, passed, draw.depth_buffer);
         return;
     }
+    let colours = draw.pixels.draws_colours();
     let Some(test) = draw.test() else {
         count_looked_up(draw, primitive, run, counts);
-        counts.count_painted(covered, paint(draw, primitive, run, surfaces));
+        let painted = compare(draw, primitive, None, run, surfaces, counts);
+        counts.count_painted(covered, painted, colours);
         return;
     };
     let mut spent = 0;
@@ -110,11 +113,11 @@ fn visit(
         }
     }
     count_looked_up(draw, primitive, run, counts);
-    let passed = compare(draw, primitive, test, run, surfaces);
+    let passed = compare(draw, primitive, Some(test), run, surfaces, counts);
     if test.write {
         surfaces.words[index] = word(draw, area, surfaces);
     }
-    counts.count_compared(test.write, pixels, covered, passed, spent);
+    counts.count_compared(test.write, pixels, covered, passed, spent, colours);
 }
 
 /// Counts the texels that are looked up for holes.
@@ -137,34 +140,40 @@ fn fill_with_background(draw: &ZaDraw, area: &Rectangle, surfaces: &mut Surfaces
     }
 }
 
-/// The pixels get the primitive's colours, whatever their depth; returns how many there are.
-fn paint(draw: &ZaDraw, primitive: &Primitive, run: &[[i32; 2]], surfaces: &mut Surfaces<'_>) -> u64 {
-    let mut painted = 0;
-    for &[x, y] in run.iter().filter(|[x, y]| !primitive.colours.is_hole(*x, *y)) {
-        painted += 1;
-        let pixel = draw.pixels.pixel_format.encode(primitive.colours.colour(x, y).to_le_bytes());
-        put(surfaces.colour, draw.pixels.pixel_format, draw.pixels.colour_pitch, x as usize, y as usize, pixel);
-    }
-    painted
-}
-
-/// The pixels that pass the depth test get the primitive's colours and depths; returns how many do.
+/// The pixels that pass the tests get the primitive's colours and depths; returns how many do.
 fn compare(
     draw: &ZaDraw,
     primitive: &Primitive,
-    test: DepthTest,
+    test: Option<DepthTest>,
     run: &[[i32; 2]],
     surfaces: &mut Surfaces<'_>,
+    counts: &mut ZaCounts,
 ) -> u64 {
     let mut passed = 0;
-    for &[x, y] in run {
-        let z = primitive.depth([x, y]);
-        let stored = &mut surfaces.depth[y as usize * draw.pixels.depth_pitch + x as usize];
-        if test.passes(z, *stored) && !primitive.colours.is_hole(x, y) {
-            if test.write {
-                *stored = z;
+    for &[x, y] in run.iter().filter(|[x, y]| !primitive.colours.is_hole(*x, *y)) {
+        let (column, row) = (x as usize, y as usize);
+        let (z, place) = (primitive.depth([x, y]), row * draw.pixels.depth_pitch + column);
+        let passes = || test.is_none_or(|test| test.passes(z, surfaces.depth[place]));
+        let drawn = match draw.pixels.stencil {
+            None => passes(),
+            Some(StencilSetting { rule, pitch }) => {
+                let stored = &mut surfaces.stencil[row * pitch + column];
+                let stencilled = Stencilled { rule, front: primitive.front };
+                let drawn = stencilled.decide(stored, &mut counts.stencil, passes);
+                counts.clocks += 1;
+                drawn
             }
-            passed += paint(draw, primitive, &[[x, y]], surfaces);
+        };
+        if !drawn {
+            continue;
+        }
+        passed += 1;
+        if test.is_some_and(|test| test.write) {
+            surfaces.depth[place] = z;
+        }
+        if draw.pixels.draws_colours() {
+            let pixel = draw.pixels.pixel_format.encode(primitive.colours.colour(x, y).to_le_bytes());
+            put(surfaces.colour, draw.pixels.pixel_format, draw.pixels.colour_pitch, column, row, pixel);
         }
     }
     passed

@@ -2,6 +2,7 @@
 
 use super::blocks::{Blocks, ones};
 use super::{ZaCounts, ZaDraw};
+use crate::hidden::stencil::StencilCounts;
 use crate::hidden::z_buffer::DepthTest;
 use crate::hidden::z_buffer::tile::{TILE, Tile};
 use zga_abi::format::PixelFormat;
@@ -100,9 +101,10 @@ impl ZaTile<'_> {
         let words = if self.writes { visits.compared } else { 0 };
         let initial_depths = if self.draw.depth_buffer { visits.initialised_pixels } else { 0 };
         self.counts.plus(ZaCounts {
-            // Holes take another way.
+            // Holes and stencil tests take another way.
             fragments: 0,
             holes: 0,
+            stencil: StencilCounts::default(),
             spans: 0,
             passed: visits.initialised_passed + passed,
             initialised: visits.initialised,

@@ -31,7 +31,7 @@ fn levels() -> Vec<Level> {
 }
 
 fn setting(format: DepthFormat, pixel_format: PixelFormat, area: [[i32; 2]; 2]) -> Setting {
-    Setting { format, pixel_format, colour_pitch: PITCHES[0], depth_pitch: PITCHES[1], area }
+    Setting { format, pixel_format, colour_pitch: PITCHES[0], depth_pitch: PITCHES[1], area, stencil_pitch: 0 }
 }
 
 fn whole() -> [[i32; 2]; 2] {
@@ -51,6 +51,7 @@ fn draw(test: Option<DepthTest>, mode: BlendMode) -> ItemDraw {
         blend: true,
         mode,
         tag: 0,
+        stencil: None,
         scissor,
         colour: None,
         depth: None,
@@ -82,7 +83,7 @@ fn composed(items: Vec<Item>, draws: Vec<ItemDraw>, pixel: u32, depth: i32) -> (
         let mut colours = vec![pixel; PITCHES[0] * SIZE[1] as usize];
         let mut depths = vec![depth; PITCHES[1] * SIZE[1] as usize];
         let (counts, stopped) =
-            Unit::default().compose(&setting, &scene, level, None, &mut colours, &mut depths, &|_| None);
+            Unit::default().compose(&setting, &scene, level, None, &mut colours, &mut depths, &mut [], &|_| None);
         assert_eq!(stopped, Ok(()));
         (colours, counts)
     });
@@ -130,7 +131,8 @@ fn compose_stopped_says_so() {
     for level in [None, Some(Level::new())] {
         let mut colours = vec![0; PITCHES[0] * SIZE[1] as usize];
         let stop = |clocks: crate::probe::account::Clocks| (clocks.0 > 150).then_some(Stopped::Watchdog);
-        let (counts, stopped) = Unit::default().compose(&setting, &scene, level, None, &mut colours, &mut [], &stop);
+        let (counts, stopped) =
+            Unit::default().compose(&setting, &scene, level, None, &mut colours, &mut [], &mut [], &stop);
         assert_eq!(stopped, Err(Stopped::Watchdog));
         assert!(counts.fragments < (SIZE[0] * SIZE[1]) as u64, "{level:?} went on");
     }
@@ -234,12 +236,12 @@ proptest! {
         }
         let before = depths.clone();
         let mut expected = colours.clone();
-        let counts = specification::compose(&setting, &scene, &mut expected, &depths);
+        let counts = specification::compose(&setting, &scene, &mut expected, &depths, &[]);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
         for (level, pool) in levels().into_iter().flat_map(|level| [(level, None), (level, Some(&pool))]) {
             let mut found = colours.clone();
             let (found_counts, stopped) =
-                Unit::default().compose(&setting, &scene, Some(level), pool, &mut found, &mut depths, &|_| None);
+                Unit::default().compose(&setting, &scene, Some(level), pool, &mut found, &mut depths, &mut [], &|_| None);
             prop_assert_eq!(stopped, Ok(()));
             prop_assert!(found == expected, "another picture at {:?}", level);
             prop_assert_eq!(found_counts, counts);
@@ -256,7 +258,7 @@ fn touched_holds_every_pixel_that_changes() {
     let setting = setting(DepthFormat::default(), PixelFormat::Argb8888, whole());
     let touched = Unit::default().touched(&setting, &sliver);
     let mut colours = vec![0; PITCHES[0] * SIZE[1] as usize];
-    specification::compose(&setting, &sliver, &mut colours, &[]);
+    specification::compose(&setting, &sliver, &mut colours, &[], &[]);
     let inside = |x: u32, y: u32| touched.iter().any(|r| (r.x..r.right).contains(&x) && (r.y..r.bottom).contains(&y));
     let changed = |x: u32, y: u32| colours[y as usize * PITCHES[0] + x as usize] != 0;
     let pixels = || (0..SIZE[1] as u32).flat_map(|y| (0..SIZE[0] as u32).map(move |x| (x, y)));

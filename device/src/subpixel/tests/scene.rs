@@ -26,6 +26,7 @@ fn state(effects: Effects, tag: u32) -> DrawState {
         light: None,
         fog: None,
         blend: BlendMode::Alpha,
+        stencil: None,
     }
 }
 
@@ -65,11 +66,11 @@ fn rule_is_nearest_last_or_in_order() {
 fn clear_of_everything_forgets_and_of_a_part_is_an_item() {
     let mut scene = Scene::default();
     draw(&mut scene, Effects::ANTI_ALIAS, Some(DepthTest::LESS), 255);
-    let part = Clear { area: Rectangle { right: 3, ..AREA }, colour: Some(5), depth: None };
+    let part = Clear { area: Rectangle { right: 3, ..AREA }, colour: Some(5), depth: None, stencil: None };
     scene.clear(&part, false, false);
     assert_eq!((scene.items.len(), scene.items[1].kind, scene.rule()), (2, Kind::Clear, Rule::InOrder));
 
-    scene.clear(&Clear { area: AREA, colour: Some(6), depth: Some(7) }, true, true);
+    scene.clear(&Clear { area: AREA, colour: Some(6), depth: Some(7), stencil: None }, true, true);
     assert_eq!((scene.items.len(), &scene.colour, &scene.depth), (0, &Base::Uniform(6), &Base::Uniform(7)));
     assert!(scene.called, "what a draw has called for stays called for");
     draw(&mut scene, Effects::empty(), None, 255);
@@ -98,7 +99,7 @@ fn clear_beyond_the_limit_overflows_and_keeps_what_is_there() {
     draw(&mut scene, Effects::ANTI_ALIAS, Some(DepthTest::LESS), 255);
     let item = scene.items[0];
     scene.items.resize(ITEM_LIMIT, item);
-    let part = Clear { area: Rectangle { right: 3, ..AREA }, colour: Some(5), depth: None };
+    let part = Clear { area: Rectangle { right: 3, ..AREA }, colour: Some(5), depth: None, stencil: None };
     scene.clear(&part, false, false);
     assert!(scene.overflowed && scene.full());
     assert_eq!(scene.items.len(), ITEM_LIMIT);

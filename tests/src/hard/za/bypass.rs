@@ -157,7 +157,7 @@ pub fn no_stale_bypass() -> Row {
                     let colour = [10 * number + 5, 7, 200 - number, 255];
                     let layer = quad(area, z).map(|primitive| coloured(primitive, colour));
                     screen.draw(&layer, &state);
-                    let test = Test { function: Some(state.function), write: state.write, scissor: all };
+                    let test = Test { function: Some(state.function), write: state.write, scissor: all, stencil: None };
                     canvas.draw(&layer, &test);
                 }
                 let found = (screen.shown(), screen.depths());

@@ -97,7 +97,7 @@ impl Painting {
     /// Draws a primitive whose fragments are what `fragment` says for a column and row.
     pub fn draw(&mut self, primitive: &Primitive, brush: &Brush, mut fragment: impl FnMut(i32, i32) -> Fragment) {
         let Some(plane) = PrescribedDepth::new(primitive, self.format) else { return };
-        let Test { function, write, scissor: [left, top, right, bottom] } = brush.test;
+        let Test { function, write, scissor: [left, top, right, bottom], .. } = brush.test;
         let (width, height, store) = (self.width, self.height, self.store);
         for_each_pixel(primitive, width, height, |i, j| {
             if !(left..right).contains(&i) || !(top..bottom).contains(&j) {

@@ -7,7 +7,7 @@ use super::*;
 use proptest::prelude::*;
 
 const ALL: Area = [0, 0, 99, 99];
-const LESS: Test = Test { function: Some(DepthFunction::Less), write: true, scissor: ALL };
+const LESS: Test = Test { function: Some(DepthFunction::Less), write: true, scissor: ALL, stencil: None };
 
 fn layer(mode: u32) -> Brush {
     Brush { test: LESS, mode: Some(mode) }

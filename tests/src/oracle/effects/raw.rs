@@ -126,7 +126,7 @@ impl Registers {
     fn test(&self) -> Test {
         let function = DepthFunction::ALL[(self.depth_control & 7) as usize];
         let function = self.calls(DEPTH).then_some(function);
-        Test { function, write: self.depth_control >> 8 & 1 == 1, scissor: self.scissor }
+        Test { function, write: self.depth_control >> 8 & 1 == 1, scissor: self.scissor, stencil: None }
     }
 
     /// The blend mode of a primitive, unless it can be known to be opaque.

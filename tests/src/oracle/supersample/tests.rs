@@ -4,7 +4,7 @@ use super::*;
 
 const GRIDS: [[u32; 2]; 3] = [[4, 4], [8, 4], [8, 8]];
 const ALL: Area = [0, 0, 99, 99];
-const LESS: Test = Test { function: Some(DepthFunction::Less), write: true, scissor: ALL };
+const LESS: Test = Test { function: Some(DepthFunction::Less), write: true, scissor: ALL, stencil: None };
 
 fn target(size: [u32; 2], grid: [u32; 2]) -> Supersampled {
     Supersampled::new(size, grid, DepthFormat::default(), Resolve::Values)

@@ -13,7 +13,7 @@ fn scene(tokens: &[u32], width: u32, super_buffer: bool) -> (Held, Target) {
     let setting = SystolicSetting { super_buffer, ..SystolicSetting::default() };
     let clear = |y: u32| {
         let area = Rectangle { x: 0, y, right: 1, bottom: y + 1 };
-        Item::Clear { area, colour: Some(0), depth: None }
+        Item::Clear { area, colour: Some(0), depth: None, stencil: None }
     };
     let lines = (0..).zip(tokens).flat_map(|(y, &count)| std::iter::repeat_n(clear(y), count as usize));
     (Held { items: lines.collect(), ..Held::default() }, Target { systolic: setting, ..target })

@@ -22,6 +22,7 @@ use super::Machine;
 use super::array::Array;
 use super::element::{Elements, Rules};
 use super::token::{Beat, Luminance, Pixel, Token};
+use crate::hidden::stencil::StencilRule;
 use crate::hidden::z_buffer::DepthTest;
 use fearless_simd::Level;
 use proptest::prelude::*;
@@ -70,6 +71,7 @@ fn token(first: u32, more: u32, z: i64, dz: i64, tag: u32) -> Token {
         range: [0, i32::MAX],
         test: DepthTest::LESS,
         luminance: Some(Luminance::Tag(tag)),
+        stencil: StencilRule::Keep,
     }
 }
 
@@ -90,7 +92,7 @@ fn line(width: u32, tokens: &[Token], setting: SystolicSetting) -> Vec<Pixel> {
 
 /// The same by the definition: span by span against a line of depths.
 fn line_by_definition(width: u32, tokens: &[Token], below: u32) -> Vec<Pixel> {
-    let mut pixels = vec![Pixel { luminance: Luminance::Background, depth: FAR }; width as usize];
+    let mut pixels = vec![Pixel { luminance: Luminance::Background, depth: FAR, stencil: 0 }; width as usize];
     for token in tokens {
         let covered = (0..).zip(&mut pixels).skip(token.first as usize).take(token.more as usize + 1);
         for (x, pixel) in covered {
@@ -126,7 +128,7 @@ fn tokens(width: u32) -> impl Strategy<Value = Token> {
     ];
     let segment = (0..width).prop_flat_map(move |first| (Just(first), 0..width - first));
     (segment, depths, ranges, tests(), luminances()).prop_map(|((first, more), (z, dz), range, test, luminance)| {
-        Token { first, more, z, dz, range, test, luminance }
+        Token { first, more, z, dz, range, test, luminance, stencil: StencilRule::Keep }
     })
 }
 

@@ -6,6 +6,7 @@ use crate::geometry::assembly::{Point, Shape};
 use crate::geometry::line::Line;
 use crate::geometry::triangle::Triangle;
 use crate::hidden::held::{Background, Held, HeldDraw, Item};
+use crate::hidden::stencil::StencilCounts;
 use crate::hidden::systolic::{SystolicCounts, charge, closed_form, draw_scene};
 use crate::hidden::z_buffer::band::Setting;
 use crate::hidden::z_buffer::specification;
@@ -46,6 +47,7 @@ pub(super) fn target(width: u32, height: u32, format: DepthFormat, pixels: Pixel
         systolic: SystolicSetting::default(),
         tile: [8, 8],
         subpixel: None,
+        stencil: None,
     }
 }
 
@@ -55,7 +57,7 @@ pub(super) fn held(parts: &[Part], background: Background, format: DepthFormat) 
         let (shape, draw) = match part {
             Part::Clear(area, colour, depth) => {
                 let depth = depth.map(|depth| (depth & format.maximum()) as i32);
-                held.items.push(Item::Clear { area: *area, colour: *colour, depth });
+                held.items.push(Item::Clear { area: *area, colour: *colour, depth, stencil: None });
                 continue;
             }
             Part::Triangle(v, draw) => {
@@ -109,6 +111,7 @@ fn specified(held: &Held, target: &Target) -> Drawn {
         format: target.depth_format,
         interpolation: draw.interpolation,
         shading: None,
+        stencil: None,
         cuts_segments: false,
         scissor: draw.scissor,
         width,
@@ -120,7 +123,13 @@ fn specified(held: &Held, target: &Target) -> Drawn {
     let clear = |area: &Rectangle, to: Option<u32>, z: Option<i32>, colour: &mut [u32], depth: &mut [i32]| {
         for (y, x) in (area.y..area.bottom).flat_map(|y| (area.x..area.right).map(move |x| (y, x))) {
             if let Some(to) = to {
-                let draw = HeldDraw { test: None, interpolation: Interpolation::Flat, shading: None, scissor: whole };
+                let draw = HeldDraw {
+                    test: None,
+                    interpolation: Interpolation::Flat,
+                    shading: None,
+                    scissor: whole,
+                    stencil: None,
+                };
                 let vertex = ScreenVertex { x: x as i32 * 256, y: y as i32 * 256, colour: to, ..Default::default() };
                 let point = Shape::Point(Point { pixel: [x as i32, y as i32], z: 0 }, vertex);
                 let counts = specification::draw(&setting(&draw), std::iter::once((&point, 0)), colour, &mut []);
@@ -140,7 +149,7 @@ fn specified(held: &Held, target: &Target) -> Drawn {
     for item in &held.items {
         let before = depth.clone();
         let (area, shape) = match item {
-            Item::Clear { area, colour: to, depth: z } => {
+            Item::Clear { area, colour: to, depth: z, .. } => {
                 clear(area, *to, *z, &mut colour, &mut depth);
                 (area, None)
             }
@@ -185,6 +194,7 @@ fn specified(held: &Held, target: &Target) -> Drawn {
         colours: if held.background.colour.is_some() { pixels } else { seen(&|winner| winner.is_some()) },
         shaded: seen(&|winner| *winner == Some(true)),
         shading: ShadingCounts::default(),
+        stencil: StencilCounts::default(),
     };
     if target.depth.is_none() {
         depth.clear();
@@ -212,6 +222,7 @@ fn draws(width: u32, height: u32) -> impl Strategy<Value = HeldDraw> {
         interpolation,
         shading: None,
         scissor,
+        stencil: None,
     })
 }
 
@@ -260,7 +271,8 @@ fn scenes() -> impl Strategy<Value = (Target, Vec<Part>, Background)> {
     targets().prop_flat_map(|target| {
         let maximum = target.depth_format.maximum();
         let depth = proptest::option::of((0..=maximum).prop_map(|depth| depth as i32));
-        let background = (any::<Option<u32>>(), depth).prop_map(|(colour, depth)| Background { colour, depth });
+        let background =
+            (any::<Option<u32>>(), depth).prop_map(|(colour, depth)| Background { colour, depth, stencil: None });
         (Just(target), parts(target.colour.width, target.colour.height), background)
     })
 }
@@ -292,7 +304,10 @@ proptest! {
 #[test]
 fn scene_empty_is_refreshed_line_by_line() {
     let target = target(20, 5, DepthFormat::default(), PixelFormat::Xrgb8888, true);
-    let held = Held { background: Background { colour: Some(0x0010_2030), depth: Some(77) }, ..Held::default() };
+    let held = Held {
+        background: Background { colour: Some(0x0010_2030), depth: Some(77), stencil: None },
+        ..Held::default()
+    };
 
     let drawn = clocked(&held, &target, Some(Level::new()));
 

@@ -52,7 +52,7 @@ impl Wave {
 fn scene(super_buffer: bool) -> (Held, Target) {
     let target = target(8, 2, DepthFormat::default(), PixelFormat::Xrgb8888, false);
     let area = Rectangle { x: 1, y: 0, right: 6, bottom: 1 };
-    let items = vec![Item::Clear { area, colour: Some(0xFF), depth: Some(40) }];
+    let items = vec![Item::Clear { area, colour: Some(0xFF), depth: Some(40), stencil: None }];
     let systolic = SystolicSetting { super_buffer, ..SystolicSetting::default() };
     (Held { items, ..Held::default() }, Target { systolic, ..target })
 }

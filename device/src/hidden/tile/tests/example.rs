@@ -23,6 +23,7 @@ const DRAW: HeldDraw = HeldDraw {
     interpolation: Interpolation::Flat,
     shading: None,
     scissor: Rectangle { x: 0, y: 0, right: 24, bottom: 16 },
+    stencil: None,
 };
 
 fn corner(x: i32, y: i32, z: u32) -> ScreenVertex {

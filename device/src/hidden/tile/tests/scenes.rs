@@ -29,6 +29,7 @@ pub fn target(size: [u32; 2], tile: [u32; 2], format: PixelFormat, depth: DepthF
         systolic: SystolicSetting::default(),
         tile,
         subpixel: None,
+        stencil: None,
     }
 }
 
@@ -119,6 +120,7 @@ fn draw(size: [u32; 2]) -> impl Strategy<Value = HeldDraw> {
         interpolation,
         shading: None,
         scissor,
+        stencil: None,
     })
 }
 
@@ -135,7 +137,7 @@ pub struct Scene {
 pub fn scene(target: Target, items: &[(Made, HeldDraw)], background: [Option<u32>; 2]) -> Scene {
     let mut held = Held::default();
     let all = Rectangle { x: 0, y: 0, right: target.colour.width, bottom: target.colour.height };
-    held.clear(true, all, background[0], background[1].map(|z| z as i32));
+    held.clear(true, all, background[0], background[1].map(|z| z as i32), None);
     for (made, draw) in items {
         let mut list = List::default();
         list.reset(draw.scissor);
@@ -153,7 +155,7 @@ pub fn scene(target: Target, items: &[(Made, HeldDraw)], background: [Option<u32
             Made::Point(v) => list.point(&Point { pixel: [v.x >> 8, v.y >> 8], z: v.z as i32 }, v, 0),
             Made::Clear(colour, depth, planes) => {
                 let colour = (planes & 1 == 0).then_some(*colour);
-                held.clear(false, draw.scissor, colour, (planes & 2 == 0).then_some(*depth as i32));
+                held.clear(false, draw.scissor, colour, (planes & 2 == 0).then_some(*depth as i32), None);
             }
         }
         held.add(draw, &list, |_| None);
@@ -240,6 +242,7 @@ pub fn reference(scene: &Scene) -> Reference {
         format: target.depth_format,
         interpolation: draw.interpolation,
         shading: None,
+        stencil: None,
         cuts_segments: false,
         scissor: draw.scissor,
         width: surface.width,
@@ -285,7 +288,7 @@ pub fn reference(scene: &Scene) -> Reference {
                 let again = specification::draw(&setting, one, &mut picture.colour, &mut picture.depth);
                 assert_eq!(again, counts);
             }
-            Item::Clear { area, colour, depth } => {
+            Item::Clear { area, colour, depth, .. } => {
                 fill(&mut picture, area, *colour, *depth);
                 if colour.is_some() {
                     for y in area.y as usize..area.bottom as usize {

@@ -50,7 +50,7 @@ impl Memory {
     }
 
     fn surfaces(&mut self) -> Surfaces<'_> {
-        Surfaces { colour: &mut self.colour, depth: &mut self.depth, words: &mut self.words }
+        Surfaces { colour: &mut self.colour, depth: &mut self.depth, words: &mut self.words, stencil: &mut [] }
     }
 
     /// The memory after all cleared blocks were brought to it.
@@ -75,6 +75,7 @@ fn za_draw(frame: &Frame, background: Background, state: &State) -> ZaDraw {
             format: frame.depth_format,
             interpolation: state.interpolation,
             shading: None,
+            stencil: None,
             cuts_segments: false,
             scissor: state.scissor,
             width: frame.grid.size[0],

@@ -1,6 +1,7 @@
 //! Single events, followed by hand.
 
 use super::*;
+use crate::hidden::stencil::StencilCounts;
 use crate::hidden::za::memory::{background_blocks, clear_logically};
 use crate::probe::account::{Account, Clocks};
 use zga_abi::Counter;
@@ -306,6 +307,7 @@ fn charge_puts_each_count_into_its_counter() {
         fragments: 0,
         holes: 0,
         spans: 1,
+        stencil: StencilCounts { tested: 12, failed: 13 },
         passed: 2,
         initialised: 3,
         bypassed: 4,
