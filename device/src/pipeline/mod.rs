@@ -15,6 +15,7 @@ mod subpixel_path;
 mod workers;
 mod za_path;
 
+use crate::built::{Key, LayerKey, LightKey, SubpixelKey};
 use crate::geometry::GeometryRegisters;
 use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::{Assembler, GeometryCounts, List, Widths};
@@ -219,7 +220,7 @@ impl Pipeline {
         let drawn = match target.hidden_surface {
             HiddenSurface::ZBuffer | HiddenSurface::Za => Ok(()),
             HiddenSurface::Systolic | HiddenSurface::Tile => {
-                let layers = self.has_layers(&target);
+                let layers = self.layers_of(&target).is_some();
                 self.sorted.end(memory.drawing(), &target, self.level, layers, account, stop)
             }
         };
@@ -388,7 +389,8 @@ impl Pipeline {
         let size = [target.colour.width, target.colour.height];
         let transform = Transform::new(geometry, state.effects, size, target.depth_format, target.subpixel_bits);
         let shading = self.shading(memory, &target, geometry, &transform, state, draw, account)?;
-        let light = state.light.filter(|light| !light.per_pixel).map(|light| VertexLight {
+        let per_vertex = state.light.filter(|light| !light.per_pixel && LightKey::built().is_some());
+        let light = per_vertex.map(|light| VertexLight {
             lights: Lights::read(memory.words(), &light),
             transform: parameter_transform(geometry, &transform, state, draw),
         });
@@ -420,8 +422,11 @@ impl Pipeline {
             let taken_before = self.scene.items.len();
             let alphas = shading.as_ref().map_or(AlphaRule::Vertices, |shading| shading.alphas());
             let taken = match target.subpixel {
-                Some(_) => self.scene.draw(state, setting.test, setting.interpolation, alphas),
-                None => self.scene.wait(state, setting.test, setting.interpolation, alphas),
+                Some(_) => SubpixelKey::built()
+                    .and_then(|_| self.scene.draw(state, setting.test, setting.interpolation, alphas)),
+                None => {
+                    LayerKey::built().and_then(|_| self.scene.wait(state, setting.test, setting.interpolation, alphas))
+                }
             };
             let assembler = Assembler {
                 fetch: Fetch::new(memory.words(), draw, state.material_colour, light.as_ref()),

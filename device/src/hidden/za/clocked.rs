@@ -36,7 +36,7 @@ use super::{Surfaces, ZaCounts, ZaDraw};
 use crate::geometry::assembly::Shape;
 use crate::geometry::plane::DepthPlane;
 use crate::hidden::z_buffer::specification::colour_plane;
-use crate::shading::plane::{AffinePlane, ColourPlane};
+use crate::shading::plane::{AffinePlane, ColourPlane, Interpolated};
 use zga_abi::format::ZaPrediction;
 use zga_firmware::checked::Rectangle;
 
@@ -147,7 +147,7 @@ impl<'d> Unit<'d> {
             state: State::Idle,
             counts: ZaCounts::default(),
             depths: Predictor { plane, steep: false, below: 0 },
-            colours: Colours::Divided(ColourPlane::Flat(0)),
+            colours: Colours::Divided(ColourPlane::flat(0)),
             is_triangle: false,
             walker: Walker::default(),
             next: None,
@@ -175,7 +175,7 @@ impl<'d> Unit<'d> {
     pub fn load(&mut self, shape: &Shape, number: u32) {
         self.depths = Predictor::new(shape, self.draw.pixels.format);
         self.colours = match colour_plane(shape, &self.draw.pixels.shade(number)) {
-            ColourPlane::Affine(plane) => {
+            ColourPlane::Interpolated(Interpolated::Affine(plane)) => {
                 let (here, right) = (plane.value(0, 0), plane.value(1, 0));
                 Colours::Stepped(plane, [0, 1, 2, 3].map(|k| right[k].wrapping_sub(here[k])))
             }
