@@ -412,8 +412,7 @@ impl Pipeline {
             account.charge(Counter::CyclesGeometry, Clocks(4 * vertices));
             charge_light(light.as_ref(), vertices, account);
         }
-        let holes = shading.as_ref().is_some_and(|shading| shading.punch_through().is_some());
-        let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity, holes));
+        let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity));
         let mut first = 0;
         while first < primitives {
             if self.scene.full() {
@@ -618,12 +617,11 @@ enum Path {
 }
 
 impl Path {
-    /// Whether primitives are drawn from bins where the host can: never where a unit is to be stepped. The Za path has no
-    /// fast way for `holes` of a texture.
-    fn is_fast(&self, fidelity: Fidelity, holes: bool) -> bool {
+    /// Whether primitives are drawn from bins where the host can: never where a unit is to be stepped.
+    fn is_fast(&self, fidelity: Fidelity) -> bool {
         match self {
             Path::ZBuffer => true,
-            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast() && !holes,
+            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast(),
             Path::Sorted { held } => !held,
         }
     }
@@ -738,7 +736,7 @@ mod tests {
             bypass: true,
             depth_buffer: true,
         });
-        assert!(path.is_fast(Fidelity::Functional, false));
-        assert!(!path.is_fast(Fidelity::Clocked, false), "the state machine must be stepped whatever the kernel");
+        assert!(path.is_fast(Fidelity::Functional));
+        assert!(!path.is_fast(Fidelity::Clocked), "the state machine must be stepped whatever the kernel");
     }
 }

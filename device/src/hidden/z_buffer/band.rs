@@ -204,16 +204,21 @@ impl Setting {
         }
     }
 
+    /// What knows the holes of a primitive of a bin; they do not depend on its vertices' colours.
+    #[must_use]
+    pub(in crate::hidden) fn hole_plane(&self, bin: &Bin, index: usize) -> Option<ColourPlane> {
+        let (source, number) = (bin.colours(index)?, bin.number(index)?);
+        Some(Interpolated::Flat(0).shaded(source.first_place(), &self.shade(number)))
+    }
+
     /// The same where the texture has holes.
     #[inline(always)]
     fn draw_punched<S: Simd>(&self, simd: S, bin: &Bin, first: u32, tile: &mut Tile<'_>) {
         let (below, cuts) = (below(self.format), self.cuts_segments);
         for index in 0..bin.len() {
-            let (Some(source), Some(number)) = (bin.colours(index), bin.number(index)) else {
+            let Some(colours) = self.hole_plane(bin, index) else {
                 continue;
             };
-            // Holes do not depend on the vertices' colours.
-            let colours = Interpolated::Flat(0).shaded(source.first_place(), &self.shade(number));
             let punched = Punched { colours: &colours, id: first + index as u32, test: self.test, below, cuts };
             if let Some((triangle, _)) = bin.triangles.get(index) {
                 punched.triangle(simd, triangle, tile);

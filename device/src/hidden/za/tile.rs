@@ -53,6 +53,8 @@ pub struct Visits {
     pub compared_fragments: u64,
     /// Fragments in them that passed a test.
     pub compared_passed: u64,
+    /// Fragments in them that were holes, where there is no test.
+    pub unpainted: u64,
     /// Clocks of predictions.
     pub prediction: u64,
 }
@@ -91,7 +93,12 @@ impl ZaTile<'_> {
     /// All events of the tile. Sums of what one visit after another would count: see [`ZaCounts`].
     pub fn events(&self) -> ZaCounts {
         let (visits, tested) = (&self.visits, self.draw.test().is_some());
-        let passed = if tested { visits.compared_passed } else { visits.compared_fragments };
+        // Without a test a clock goes to every fragment of the run, holes too.
+        let (passed, painting) = if tested {
+            (visits.compared_passed, visits.compared_passed)
+        } else {
+            (visits.compared_fragments - visits.unpainted, visits.compared_fragments)
+        };
         let reads = match (tested, self.writes) {
             (false, _) => 0,
             (true, true) => visits.compared_pixels,
@@ -100,7 +107,7 @@ impl ZaTile<'_> {
         let words = if self.writes { visits.compared } else { 0 };
         let initial_depths = if self.draw.depth_buffer { visits.initialised_pixels } else { 0 };
         self.counts.plus(ZaCounts {
-            // Holes take another way.
+            // Counted where they are looked for.
             fragments: 0,
             holes: 0,
             spans: 0,
@@ -119,7 +126,7 @@ impl ZaTile<'_> {
                 + visits.compared
                 + visits.prediction
                 + reads
-                + passed
+                + painting
                 + words,
         })
     }
