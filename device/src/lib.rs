@@ -73,6 +73,7 @@
 #![forbid(unsafe_code)]
 
 mod bitmap;
+mod built;
 mod bus;
 mod card;
 mod door;

@@ -25,22 +25,9 @@ use crate::scanout::monitor::Cable;
 use parking_lot::Mutex;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
+use zga_abi::Reg;
 use zga_abi::format::HiddenSurface;
-use zga_abi::{Effects, Reg};
 
-/// Effects that this card has units for.
-const EFFECTS: Effects = Effects::DEPTH
-    .union(Effects::GOURAUD)
-    .union(Effects::PERSPECTIVE)
-    .union(Effects::DECAL)
-    .union(Effects::TEXTURE)
-    .union(Effects::MIP_MAP)
-    .union(Effects::LIGHT)
-    .union(Effects::FOG)
-    .union(Effects::BLEND)
-    .union(Effects::PUNCH_THROUGH)
-    .union(Effects::ANTI_ALIAS)
-    .union(Effects::STENCIL);
 /// Hidden-surface paths that this card has, as in CAPABILITY_PATHS.
 const PATHS: u32 = {
     let (mut paths, mut index) = (0, 0);
@@ -84,7 +71,7 @@ impl Backplane {
     /// the card's thread may hold.
     pub(crate) fn new(video_memory: u32, za_ram: u32) -> (Backplane, FifoFetch, ControlPort) {
         let registers = RegisterFile::new();
-        registers.set(Reg::CapabilityEffects, EFFECTS.bits());
+        registers.set(Reg::CapabilityEffects, crate::built::EFFECTS.bits());
         registers.set(Reg::CapabilityPaths, PATHS);
         registers.set(Reg::VideoMemorySize, video_memory);
         registers.set(Reg::ZaRamSize, za_ram);

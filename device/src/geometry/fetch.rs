@@ -6,6 +6,7 @@
 //! looked. The host may have written over an index since: such an index reads as the last vertex,
 //! so that no fetch leaves the vertex words.
 
+use crate::built::{Key, LightKey};
 use crate::shading::light::Lights;
 use crate::shading::parameters::{ParameterTransform, Parameters, VertexParameters};
 use zga_abi::format::Topology;
@@ -98,21 +99,23 @@ impl<'a> Fetch<'a> {
     #[inline(always)]
     pub fn vertex(&self, vertex: usize) -> RawVertex {
         let words = &self.vertices[vertex * self.stride..][..self.stride];
-        let colour = if self.coloured { words[3] } else { self.material };
-        RawVertex { position: [number(words[0]), number(words[1]), number(words[2])], colour }
+        // A vertex has three words at least, and its colour after them if it has one: read so, none is looked for apart.
+        let (position, rest) = words.split_first_chunk().unwrap_or((&[0; 3], &[]));
+        let colour = if self.coloured { rest.first().copied() } else { None };
+        RawVertex { position: position.map(number), colour: colour.unwrap_or(self.material) }
     }
 
     /// Light falls on the vertices.
     #[must_use]
     pub fn is_lit(&self) -> bool {
-        self.light.is_some()
+        LightKey::built().is_some() && self.light.is_some()
     }
 
     /// Vertex number `vertex` in the light that falls on it, if any does.
     #[must_use]
     pub fn lit_vertex(&self, vertex: usize) -> RawVertex {
         let raw = self.vertex(vertex);
-        let Some(light) = self.light else {
+        let (Some(light), Some(_)) = (self.light, LightKey::built()) else {
             return raw;
         };
         let carried = self.parameters(vertex);

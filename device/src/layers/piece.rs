@@ -11,7 +11,8 @@ use crate::geometry::plane::{Axis, DepthPlane, below};
 use crate::geometry::triangle::Triangle;
 use crate::hidden::z_buffer::DepthTest;
 use crate::hidden::z_buffer::specification::colour_plane;
-use crate::shading::plane::ColourPlane;
+use crate::shading::plane::{ColourPlane, Interpolated};
+use crate::shading::resolve::Sixteen;
 use crate::subpixel::scene::{Item, ItemDraw, Kind};
 use fearless_simd::prelude::*;
 use fearless_simd::u32x16;
@@ -63,7 +64,7 @@ impl Colours {
     #[must_use]
     #[inline(always)]
     pub fn flat(&self) -> Option<u32> {
-        if let ColourPlane::Flat(colour) = self.0 { Some(colour) } else { None }
+        if let ColourPlane::Interpolated(Interpolated::Flat(colour)) = self.0 { Some(colour) } else { None }
     }
 
     /// Colour of pixel (`x`, `y`).
@@ -76,8 +77,8 @@ impl Colours {
     /// Colours of 16 pixels from (`x`, `y`) on.
     #[inline(always)]
     pub fn sixteen<S: Simd>(&self, simd: S, x: i32, y: i32) -> u32x16<S> {
-        let colours = crate::shading::resolve::colours_at(simd, &self.0, x, y, u16::MAX);
-        match self.0.hole_lanes(x, y, u16::MAX) {
+        let colours = self.0.sixteen(simd, x, y, u16::MAX);
+        match self.0.hole_lanes(simd, x, y, u16::MAX) {
             0 => colours,
             holes => {
                 let mut kept = colours.to_array();

@@ -6,6 +6,7 @@
 //! begins anew with that.
 
 use super::{Pipeline, za_path};
+use crate::built::{Key, LayerKey};
 use crate::hidden::z_buffer::all_surfaces;
 use crate::layers::piece::pixels_of;
 use crate::layers::unit::weight;
@@ -22,8 +23,8 @@ const PIXELS: u64 = 1 << 16;
 
 impl Pipeline {
     /// Layers of the open scene wait for the layer unit.
-    pub(super) fn has_layers(&self, target: &Target) -> bool {
-        target.subpixel.is_none() && !self.scene.items.is_empty()
+    pub(super) fn layers_of(&self, target: &Target) -> Option<LayerKey> {
+        LayerKey::built().filter(|_| target.subpixel.is_none() && !self.scene.items.is_empty())
     }
 
     /// A clear, before it is done. What stops it is said by the next draw, or when the scene ends.
@@ -36,7 +37,7 @@ impl Pipeline {
         stop: &dyn Fn(Clocks) -> Option<Stopped>,
     ) {
         let area = clear.area;
-        if !self.has_layers(target) || area.x >= area.right || area.y >= area.bottom {
+        if self.layers_of(target).is_none() || area.x >= area.right || area.y >= area.bottom {
             return;
         }
         if clear.colour.is_none() {
@@ -79,10 +80,10 @@ impl Pipeline {
         let composed = match (self.owed.take(), self.scene.overflowed) {
             (Some(stopped), _) => Err(stopped),
             (None, true) => Err(Stopped::SceneFull),
-            (None, false) if self.has_layers(target) => {
-                self.compose(memory, target, &whole(&target.colour), account, stop)
-            }
-            (None, false) => Ok(()),
+            (None, false) => match self.layers_of(target) {
+                Some(_) => self.compose(memory, target, &whole(&target.colour), account, stop),
+                None => Ok(()),
+            },
         };
         self.scene.begin();
         composed

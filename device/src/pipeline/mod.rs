@@ -16,6 +16,7 @@ mod subpixel_path;
 mod workers;
 mod za_path;
 
+use crate::built::{Called, Key, LayerKey, LightKey, StencilKey, SubpixelKey};
 use crate::geometry::GeometryRegisters;
 use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::{Assembler, GeometryCounts, List, Widths};
@@ -223,11 +224,11 @@ impl Pipeline {
         let drawn = match target.hidden_surface {
             HiddenSurface::ZBuffer | HiddenSurface::Za => Ok(()),
             HiddenSurface::Systolic | HiddenSurface::Tile => {
-                let layers = self.has_layers(&target);
+                let layers = self.layers_of(&target).is_some();
                 self.sorted.end(memory.drawing(), &target, self.level, layers, account, stop)
             }
         };
-        if let (Some(shadow), Ok(())) = (shadow, drawn) {
+        if let (Some(shadow), Some(_), Ok(())) = (shadow, StencilKey::built(), drawn) {
             shadow_path::darken(memory, &target, shadow, account);
         }
         let spent = account.total().0 - begun.0;
@@ -407,7 +408,8 @@ impl Pipeline {
         let size = [target.colour.width, target.colour.height];
         let transform = Transform::new(geometry, state.effects, size, target.depth_format, target.subpixel_bits);
         let shading = self.shading(memory, &target, geometry, &transform, state, draw, account)?;
-        let light = state.light.filter(|light| !light.per_pixel).map(|light| VertexLight {
+        let per_vertex = state.light.filter(|light| !light.per_pixel && LightKey::built().is_some());
+        let light = per_vertex.map(|light| VertexLight {
             lights: Lights::read(memory.words(), &light),
             transform: parameter_transform(geometry, &transform, state, draw),
         });
@@ -429,9 +431,7 @@ impl Pipeline {
             account.charge(Counter::CyclesGeometry, Clocks(4 * vertices));
             charge_light(light.as_ref(), vertices, account);
         }
-        let holes = shading.as_ref().is_some_and(|shading| shading.punch_through().is_some());
-        let fragmentwise = holes || setting.stencil.is_some();
-        let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity, fragmentwise));
+        let fast = self.level.filter(|_| probe.is_none() && path.is_fast(target.fidelity, setting.stencil.is_some()));
         let mut first = 0;
         while first < primitives {
             if self.scene.full() {
@@ -440,8 +440,11 @@ impl Pipeline {
             let taken_before = self.scene.items.len();
             let alphas = shading.as_ref().map_or(AlphaRule::Vertices, |shading| shading.alphas());
             let taken = match target.subpixel {
-                Some(_) => self.scene.draw(state, setting.test, setting.interpolation, alphas),
-                None => self.scene.wait(state, setting.test, setting.interpolation, alphas),
+                Some(_) => SubpixelKey::built()
+                    .and_then(|_| self.scene.draw(state, setting.test, setting.interpolation, alphas)),
+                None => {
+                    LayerKey::built().and_then(|_| self.scene.wait(state, setting.test, setting.interpolation, alphas))
+                }
             };
             let assembler = Assembler {
                 fetch: Fetch::new(memory.words(), draw, state.material_colour, light.as_ref()),
@@ -636,11 +639,11 @@ enum Path {
 
 impl Path {
     /// Whether primitives are drawn from bins where the host can: never where a unit is to be stepped. The Za path has no
-    /// fast way where more is asked of a fragment than its depth: for holes of a texture, for a stencil test.
-    fn is_fast(&self, fidelity: Fidelity, fragmentwise: bool) -> bool {
+    /// fast way for a stencil test.
+    fn is_fast(&self, fidelity: Fidelity, stencil: bool) -> bool {
         match self {
             Path::ZBuffer => true,
-            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast() && !fragmentwise,
+            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast() && !stencil,
             Path::Sorted { held } => !held,
         }
     }
@@ -687,7 +690,7 @@ fn setting(target: &Target, state: &DrawState) -> Setting {
         },
         shading: None,
         stencil: match (state.stencil, target.stencil) {
-            (Some(rule), Some(plane)) => Some(StencilSetting { rule, pitch: plane.pitch as usize }),
+            (Some(rule), Some(plane)) => Called::new(|| StencilSetting { rule, pitch: plane.pitch as usize }),
             _ => None,
         },
         cuts_segments: target.hidden_surface == HiddenSurface::Systolic,
@@ -762,6 +765,7 @@ mod tests {
             depth_buffer: true,
         });
         assert!(path.is_fast(Fidelity::Functional, false));
+        assert!(!path.is_fast(Fidelity::Functional, true), "no fast way for a stencil test");
         assert!(!path.is_fast(Fidelity::Clocked, false), "the state machine must be stepped whatever the kernel");
     }
 }

@@ -4,6 +4,7 @@
 //! light at vertices. Nothing of this is made for a draw that calls for interpolated colours alone.
 
 use super::{Pipeline, sorted};
+use crate::built::{Called, Key, ShadingKey, TextureKey};
 use crate::geometry::GeometryRegisters;
 use crate::geometry::fetch::VertexLight;
 use crate::geometry::transform::Transform;
@@ -37,11 +38,12 @@ impl Pipeline {
         account: &mut Account,
     ) -> Result<Option<Arc<PixelShading>>, Stopped> {
         let light = state.light.filter(|light| light.per_pixel);
-        if state.texture.is_none() && state.fog.is_none() && light.is_none() {
+        let called = state.texture.is_some() || state.fog.is_some() || light.is_some();
+        if ShadingKey::built().filter(|_| called).is_none() {
             return Ok(None);
         }
         let mut texture = None;
-        if let Some(called) = &state.texture {
+        if let (Some(called), Some(_)) = (&state.texture, TextureKey::built()) {
             let (texels, decoded) = self.textures.texels(memory, called);
             if decoded {
                 account.maximum(Counter::TextureDecodedBytes, self.textures.bytes());
@@ -50,13 +52,14 @@ impl Pipeline {
             if self.held_texels > HELD_TEXELS {
                 return Err(Stopped::SceneFull);
             }
-            texture = Some(Textured { texture: texels, punch_through: state.punch_through });
+            let punch_through = state.punch_through.and_then(|alpha| Called::new(|| alpha));
+            texture = Called::new(|| Textured { texture: texels, punch_through });
         }
         Ok(Some(Arc::new(PixelShading {
             transform: parameter_transform(geometry, transform, state, draw),
-            light: light.map(|light| Lights::read(memory.words(), &light)),
+            light: light.and_then(|light| Called::new(|| Lights::read(memory.words(), &light))),
             texture,
-            fog: state.fog.as_ref().map(FogMixer::new),
+            fog: state.fog.as_ref().and_then(|fog| Called::new(|| FogMixer::new(fog))),
         })))
     }
 

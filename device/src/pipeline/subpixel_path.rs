@@ -2,6 +2,7 @@
 //! pixels when it ends.
 
 use super::{Pipeline, za_path};
+use crate::built::{Key, SubpixelKey};
 use crate::hidden::z_buffer::surfaces;
 use crate::memory::VideoMemory;
 use crate::memory::areas::whole;
@@ -20,7 +21,7 @@ const ITEMS: usize = 64;
 impl Pipeline {
     /// Before the first item of a scene with a grid: keeps what the pixels are, where no clear has said it.
     pub(super) fn keep(&mut self, memory: &mut VideoMemory, target: &Target, account: &mut Account) {
-        if target.subpixel.is_none() {
+        if SubpixelKey::built().is_none() || target.subpixel.is_none() {
             return;
         }
         if self.scene.depth == Base::Unknown && target.depth.is_none() {
@@ -62,7 +63,9 @@ impl Pipeline {
         clear: &Clear,
         account: &mut Account,
     ) {
-        if target.subpixel.is_none() || (clear.colour.is_none() && clear.depth.is_none()) {
+        // A stencil plane is no business of the unit.
+        let nothing = clear.colour.is_none() && clear.depth.is_none();
+        if SubpixelKey::built().is_none() || target.subpixel.is_none() || nothing {
             return;
         }
         let is_whole = clear.area == whole(&target.colour);
@@ -82,7 +85,7 @@ impl Pipeline {
         account: &mut Account,
         stop: &dyn Fn(Clocks) -> Option<Stopped>,
     ) -> Result<(), Stopped> {
-        if target.subpixel.is_none() {
+        if SubpixelKey::built().is_none() || target.subpixel.is_none() {
             return Ok(());
         }
         let mut map =

@@ -53,12 +53,12 @@ struct Places<'a> {
 }
 
 /// Bins that take primitives, and the tile unit's sorts where they are wanted.
-struct Share<'a, const NUMBERED: bool> {
-    bins: BinSink<'a, NUMBERED>,
+struct Share<'a> {
+    bins: BinSink<'a, true>,
     sorts: Option<&'a mut Sorts>,
 }
 
-impl<const NUMBERED: bool> Sink for Share<'_, NUMBERED> {
+impl Sink for Share<'_> {
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], number: u32) {
         self.bins.triangle(triangle, columns, vertices, number);
@@ -147,13 +147,12 @@ impl Workers {
             let to = range.start + (each * (number as u32 + 1)).min(count);
             let mut counts = GeometryCounts::default();
             empty(bins);
-            // Two loops over primitives: the one for draws of interpolated colours alone keeps no numbers.
-            let first = if numbers {
-                let mut share = Share { bins: BinSink::<true>(bins), sorts };
+            // Two loops over primitives: the one for draws that nobody else takes a part of has no code for them.
+            let first = if numbers || sorts.is_some() || taken.is_some() {
+                let mut share = Share { bins: BinSink::any(bins, numbers), sorts };
                 assembler.run(from..to, &mut Taking { sink: &mut share, taken }, &mut counts)
             } else {
-                let mut share = Share { bins: BinSink::<false>(bins), sorts };
-                assembler.run(from..to, &mut Taking { sink: &mut share, taken }, &mut counts)
+                assembler.run(from..to, &mut BinSink::plain(bins), &mut counts)
             };
             (first, to, counts)
         };

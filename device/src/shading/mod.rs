@@ -2,6 +2,7 @@
 //!
 //! | file | part |
 //! | --- | --- |
+//! | [`source`] | vertices' places and colours, until a primitive is seen |
 //! | [`plane`] | colour interpolators: flat, affine (integer), perspective-correct (f32) |
 //! | [`parameters`] | what vertices carry beside a colour, as planes |
 //! | [`pixel`] | what follows the interpolated colour: light, texture, fog |
@@ -23,3 +24,4 @@ pub mod pixel;
 pub mod plane;
 pub mod rare;
 pub mod resolve;
+pub mod source;

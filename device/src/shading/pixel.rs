@@ -5,7 +5,7 @@
 //!
 //! The order is fixed: interpolated colour, light (where it is worked out at each pixel), texture function, fog. What a
 //! draw does not call for is not there: no planes, no code, no clocks. [`ShadedPlane::colour`] is the specification, one
-//! place with everything switched by state; [`ShadedPlane::lanes`] does 16 pixels stage by stage and must equal it.
+//! place with everything switched by state; [`ShadedPlane::sixteen`] does 16 pixels stage by stage and must equal it.
 //!
 //! # Clocks
 //! | what | `cycles.` | clocks a pixel |
@@ -18,8 +18,10 @@
 use super::fog::FogMixer;
 use super::light::Lights;
 use super::parameters::{LANES, Needed, ParameterPlanes, ParameterTransform, Parameters, Place};
+use crate::built::{Called, FogKey, LightKey, PunchThroughKey, TextureKey};
 use crate::probe::account::{Account, Clocks};
 use crate::texture::{Texture, combine, combine_lanes};
+use fearless_simd::Simd;
 use std::sync::Arc;
 use zga_abi::Counter;
 use zga_abi::format::TextureFunction;
@@ -30,7 +32,7 @@ pub struct Textured {
     /// Texels.
     pub texture: Arc<Texture>,
     /// Texels with an alpha below this are holes.
-    pub punch_through: Option<u8>,
+    pub punch_through: Option<Called<PunchThroughKey, u8>>,
 }
 
 /// What the pixels of a draw go through. Two are equal if they are one and the same.
@@ -39,11 +41,11 @@ pub struct PixelShading {
     /// From vertices to the screen and the eye.
     pub transform: ParameterTransform,
     /// Light at each pixel.
-    pub light: Option<Lights>,
+    pub light: Option<Called<LightKey, Lights>>,
     /// Texture.
-    pub texture: Option<Textured>,
+    pub texture: Option<Called<TextureKey, Textured>>,
     /// Fog.
-    pub fog: Option<FogMixer>,
+    pub fog: Option<Called<FogKey, FogMixer>>,
 }
 
 impl PartialEq for PixelShading {
@@ -195,13 +197,13 @@ impl PixelShading {
     /// What alphas it makes of the vertices'.
     #[must_use]
     pub fn alphas(&self) -> AlphaRule {
-        self.texture.as_ref().map_or(AlphaRule::Vertices, Textured::alphas)
+        self.texture.as_ref().map_or(AlphaRule::Vertices, |textured| textured.alphas())
     }
 
     /// Texels with an alpha below this are holes, where the draw has any.
     #[must_use]
     pub fn punch_through(&self) -> Option<u8> {
-        self.texture.as_ref().and_then(|textured| textured.punch_through)
+        self.texture.as_ref()?.punch_through.as_deref().copied()
     }
 }
 
@@ -234,15 +236,20 @@ impl ShadedPlane {
         textured.texture.texel(u, v, lambda)
     }
 
+    /// A texture with holes, and the least alpha that is none.
+    #[inline(always)]
+    fn punched(&self) -> Option<(&Textured, u32)> {
+        let textured = self.shading.texture.as_deref()?;
+        Some((textured, u32::from(**textured.punch_through.as_ref()?)))
+    }
+
     /// Whether the place `[x, y]`, in u, is a hole.
     #[must_use]
     pub fn is_hole(&self, at: [i32; 2]) -> bool {
-        match &self.shading.texture {
-            Some(textured @ Textured { punch_through: Some(reference), .. }) => {
-                self.texel(textured, &self.planes.place(at)) >> 24 < u32::from(*reference)
-            }
-            _ => false,
-        }
+        let Some((textured, reference)) = self.punched() else {
+            return false;
+        };
+        self.texel(textured, &self.planes.place(at)) >> 24 < reference
     }
 
     /// What becomes of an interpolated colour at the place `[x, y]`, in u.
@@ -280,23 +287,42 @@ impl ShadedPlane {
         textured.texture.texels(&u, &v, &lambda, wanted)
     }
 
-    /// Which of the wanted pixels from (`x`, `y`) on are holes, a bit each.
     #[inline(always)]
-    pub fn hole_lanes(&self, x: i32, y: i32, wanted: u16) -> u16 {
-        let Some(textured @ Textured { punch_through: Some(reference), .. }) = &self.shading.texture else {
+    fn hole_lanes(&self, x: i32, y: i32, wanted: u16) -> u16 {
+        let Some((textured, reference)) = self.punched() else {
             return 0;
         };
         let texels = self.texel_lanes(textured, &self.planes.places(x, y), wanted);
         let mut holes = 0;
         for (lane, texel) in texels.iter().enumerate() {
-            holes |= u16::from(texel >> 24 < u32::from(*reference)) << lane;
+            holes |= u16::from(texel >> 24 < reference) << lane;
         }
         holes & wanted
     }
 
-    /// What becomes of the colours of the 16 pixels from (`x`, `y`) on; those not wanted mean nothing.
+    /// What becomes of the colours of the 16 pixels from (`x`, `y`) on; those not wanted mean nothing. One piece of code
+    /// at each SIMD level for whoever asks.
+    #[must_use]
+    #[inline(never)]
+    pub fn sixteen<S: Simd>(&self, simd: S, colours: &[u32; LANES], x: i32, y: i32, wanted: u16) -> [u32; LANES] {
+        simd.vectorize(
+            #[inline(always)]
+            || self.lanes(*colours, x, y, wanted),
+        )
+    }
+
+    /// The same for holes: which of the wanted pixels are any, a bit each.
+    #[must_use]
+    #[inline(never)]
+    pub fn holes_of_sixteen<S: Simd>(&self, simd: S, x: i32, y: i32, wanted: u16) -> u16 {
+        simd.vectorize(
+            #[inline(always)]
+            || self.hole_lanes(x, y, wanted),
+        )
+    }
+
     #[inline(always)]
-    pub fn lanes(&self, colours: [u32; LANES], x: i32, y: i32, wanted: u16) -> [u32; LANES] {
+    fn lanes(&self, colours: [u32; LANES], x: i32, y: i32, wanted: u16) -> [u32; LANES] {
         let (shading, places) = (&*self.shading, self.planes.places(x, y));
         let mut colours = colours;
         if let (Some(lights), Some(surface)) = (&shading.light, &self.planes.surface) {

@@ -18,13 +18,16 @@
 use super::parameters::Parameters;
 use super::pixel::{PixelShading, ShadedPlane};
 use super::rare::{LineColours, PrecisePlane};
+pub use super::source::ColourSource;
+use crate::built::{Called, ShadingKey};
 use crate::geometry::ratio::round_ratio;
-use crate::geometry::{CENTRE, PIXEL, ScreenVertex};
+use crate::geometry::{CENTRE, PIXEL};
+use fearless_simd::Simd;
 use std::sync::Arc;
 
-/// How a primitive's colour follows the pixel.
-#[derive(Clone, Debug)]
-pub enum ColourPlane {
+/// How a primitive's interpolated colour follows the pixel.
+#[derive(Clone, Copy, Debug)]
+pub enum Interpolated {
     /// One colour; RGBA, R in 7:0.
     Flat(u32),
     /// Affine in the pixel.
@@ -35,8 +38,15 @@ pub enum ColourPlane {
     Line(LineColours),
     /// Perspective-correct, where f32 would cancel.
     Precise(PrecisePlane),
-    /// One of the others, and what its colours go through.
-    Shaded(Box<(ColourPlane, ShadedPlane)>),
+}
+
+/// How a primitive's colour follows the pixel.
+#[derive(Clone, Debug)]
+pub enum ColourPlane {
+    /// By interpolation alone.
+    Interpolated(Interpolated),
+    /// The interpolated colour goes through more.
+    Shaded(Called<ShadingKey, Box<(Interpolated, ShadedPlane)>>),
 }
 
 /// How the pixels of a primitive get their colours.
@@ -85,124 +95,6 @@ pub struct PerspectivePlane {
 /// Affine lines shorter than this, in u, can overshoot an end by more than an affine plane holds.
 const SHORT: i64 = 128;
 
-/// What a primitive's colours are made from, once it turns out to be seen.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct ColourSource {
-    /// x, y of the vertices; s16.8, pixels. A line repeats its second vertex, a point its only one.
-    position: [[i32; 2]; 3],
-    /// RGBA of the vertices, R in 7:0.
-    colour: [u32; 3],
-    /// 1 / w of the vertices.
-    reciprocal_w: [f32; 3],
-}
-
-impl ColourSource {
-    /// The source of a primitive with these vertices.
-    #[must_use]
-    #[inline(always)]
-    pub fn new(v: &[ScreenVertex; 3]) -> ColourSource {
-        let [a, b, c] = v;
-        ColourSource {
-            position: [[a.x, a.y], [b.x, b.y], [c.x, c.y]],
-            colour: [a.colour, b.colour, c.colour],
-            reciprocal_w: [a.reciprocal_w, b.reciprocal_w, c.reciprocal_w],
-        }
-    }
-
-    /// The place of the first vertex, u.
-    #[must_use]
-    pub fn first_place(&self) -> [i32; 2] {
-        self.position[0]
-    }
-
-    /// Whether the vertices run counter-clockwise on the screen, where y goes down.
-    #[must_use]
-    pub fn runs_counter_clockwise(&self) -> bool {
-        let [a, b, c] = self.position.map(|place| place.map(i64::from));
-        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) < 0
-    }
-
-    /// The colour of a flat primitive: its first vertex's.
-    #[must_use]
-    pub fn flat(&self) -> u32 {
-        self.colour[0]
-    }
-
-    /// Colour of a triangle at a place that it covers, `[x, y]` in u: for fragments whose pixel's centre lies outside.
-    /// The reference in f64, with the clamp and the rounding of the planes.
-    #[must_use]
-    pub fn colour_at(&self, place: [i32; 2], interpolation: Interpolation) -> u32 {
-        let flat = self.colour[0] == self.colour[1] && self.colour[0] == self.colour[2];
-        if interpolation == Interpolation::Flat || flat {
-            return self.flat();
-        }
-        // Differences of coordinates have 25 bits, their products 50: exact in f64.
-        let [x0, y0] = self.position[0].map(f64::from);
-        let along = |[x, y]: [i32; 2]| (f64::from(x) - x0, f64::from(y) - y0);
-        let ((x1, y1), (x2, y2), (px, py)) = (along(self.position[1]), along(self.position[2]), along(place));
-        let inverse = 1.0 / (x1 * y2 - y1 * x2);
-        let mut share = [(px * y2 - py * x2) * inverse, (x1 * py - y1 * px) * inverse];
-        if interpolation == Interpolation::Perspective {
-            let weights = [(1.0 - share[0] - share[1]), share[0] * self.relative_w(1), share[1] * self.relative_w(2)];
-            let inverse = 1.0 / (weights[0] + weights[1] + weights[2]);
-            share = [weights[1] * inverse, weights[2] * inverse];
-        }
-        let [a, b, c] = self.colour.map(|colour| colour.to_le_bytes().map(f64::from));
-        let levels: [u8; 4] = std::array::from_fn(|k| {
-            let value = a[k] + share[0] * (b[k] - a[k]) + share[1] * (c[k] - a[k]);
-            (value.max(a[k].min(b[k]).min(c[k])).min(a[k].max(b[k]).max(c[k])) + 0.5) as u8
-        });
-        u32::from_le_bytes(levels)
-    }
-
-    /// 1 / w of vertex `n` relative to vertex 0: keeps planes in range for any w.
-    pub(super) fn relative_w(&self, n: usize) -> f64 {
-        f64::from(self.reciprocal_w[n]) / f64::from(self.reciprocal_w[0])
-    }
-
-    /// Pixels from vertex 0 to the farthest vertex, along x (0) or y (1), and the anchor's own.
-    fn extent(&self, axis: usize) -> f64 {
-        let far = |n: usize| (self.position[n][axis] - self.position[0][axis]).abs();
-        f64::from(far(1).max(far(2)) / PIXEL + 1)
-    }
-
-    /// The same with its vertices in the given order.
-    fn ordered(&self, order: [usize; 3]) -> ColourSource {
-        ColourSource {
-            position: order.map(|n| self.position[n]),
-            colour: order.map(|n| self.colour[n]),
-            reciprocal_w: order.map(|n| self.reciprocal_w[n]),
-        }
-    }
-
-    /// Row, then column: what vertices are ordered by.
-    fn place(&self, vertex: usize) -> [i32; 2] {
-        let [x, y] = self.position[vertex];
-        [y, x]
-    }
-
-    pub(super) fn channel(&self, vertex: usize, k: usize) -> u8 {
-        self.colour[vertex].to_le_bytes()[k]
-    }
-
-    /// From vertex 0 to vertex `k`, u.
-    #[inline(always)]
-    fn edge(&self, k: usize) -> [i64; 2] {
-        let along = |c: usize| i64::from(self.position[k][c]) - i64::from(self.position[0][c]);
-        [along(0), along(1)]
-    }
-
-    /// From vertex 0 to the centre of its pixel, u.
-    pub(super) fn offset_to_centre(&self) -> [i32; 2] {
-        self.position[0].map(|c| CENTRE - (c & (PIXEL - 1)))
-    }
-
-    /// The pixel of vertex 0.
-    pub(super) fn anchor(&self) -> [i32; 2] {
-        self.position[0].map(|c| c >> 8)
-    }
-}
-
 /// Which interpolators a draw calls for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
@@ -214,12 +106,12 @@ pub enum Interpolation {
     Perspective,
 }
 
-impl ColourPlane {
+impl Interpolated {
     /// The plane of a triangle that covers at least one pixel.
     #[must_use]
-    pub fn triangle(v: &ColourSource, interpolation: Interpolation) -> ColourPlane {
+    pub fn triangle(v: &ColourSource, interpolation: Interpolation) -> Interpolated {
         if interpolation == Interpolation::Flat || (v.colour[0] == v.colour[1] && v.colour[0] == v.colour[2]) {
-            return ColourPlane::Flat(v.flat());
+            return Interpolated::Flat(v.flat());
         }
         let mut order = [0, 1, 2];
         order.sort_unstable_by_key(|&n| v.place(n));
@@ -238,52 +130,51 @@ impl ColourPlane {
             let plane = PrecisePlane::new(v, slopes);
             let extent = [v.extent(0), v.extent(1)];
             return if plane.cancels(extent) {
-                ColourPlane::Precise(plane)
+                Interpolated::Precise(plane)
             } else {
-                ColourPlane::Perspective(plane.rounded())
+                Interpolated::Perspective(plane.rounded())
             };
         }
         let slopes = |c: [i64; 3]| {
             let (c1, c2) = (c[1] - c[0], c[2] - c[0]);
             [(c1 * y2 - c2 * y1) * sign, (x1 * c2 - x2 * c1) * sign]
         };
-        ColourPlane::Affine(AffinePlane::new(v, area.abs(), inverse, slopes))
+        Interpolated::Affine(AffinePlane::new(v, area.abs(), inverse, slopes))
     }
 
     /// The plane along a line that draws at least one pixel; of a point, whose colours are equal.
     #[must_use]
-    pub fn line(v: &ColourSource, interpolation: Interpolation) -> ColourPlane {
+    pub fn line(v: &ColourSource, interpolation: Interpolation) -> Interpolated {
         if interpolation == Interpolation::Flat || v.colour[0] == v.colour[1] {
-            return ColourPlane::Flat(v.flat());
+            return Interpolated::Flat(v.flat());
         }
         let v = &v.ordered(if v.place(1) < v.place(0) { [1, 0, 0] } else { [0, 1, 1] });
         let [dx, dy] = v.edge(1);
         let x_major = dx.abs() >= dy.abs();
         let length = if x_major { dx } else { dy };
         if interpolation == Interpolation::Perspective && v.reciprocal_w[0] != v.reciprocal_w[1] {
-            return ColourPlane::Line(LineColours::new(v, x_major, length, v.reciprocal_w[1] / v.reciprocal_w[0]));
+            return Interpolated::Line(LineColours::new(v, x_major, length, v.reciprocal_w[1] / v.reciprocal_w[0]));
         }
         if length.abs() < SHORT {
-            return ColourPlane::Line(LineColours::new(v, x_major, length, 1.0));
+            return Interpolated::Line(LineColours::new(v, x_major, length, 1.0));
         }
         let (sign, inverse) = (length.signum(), 1.0 / length.abs() as f64);
         let slopes = |c: [i64; 3]| {
             let rise = (c[1] - c[0]) * sign;
             if x_major { [rise, 0] } else { [0, rise] }
         };
-        ColourPlane::Affine(AffinePlane::new(v, length.abs(), inverse, slopes))
+        Interpolated::Affine(AffinePlane::new(v, length.abs(), inverse, slopes))
     }
 
     /// Colour of pixel (`x`, `y`); RGBA, R in 7:0.
     #[must_use]
     pub fn colour(&self, x: i32, y: i32) -> u32 {
         match self {
-            ColourPlane::Flat(colour) => *colour,
-            ColourPlane::Affine(plane) => plane.colour(plane.value(x, y)),
-            ColourPlane::Perspective(plane) => plane.colour(x, y),
-            ColourPlane::Line(line) => line.colour(x, y),
-            ColourPlane::Precise(plane) => plane.colour(x, y),
-            ColourPlane::Shaded(both) => both.1.colour(both.0.colour(x, y), [x * PIXEL + CENTRE, y * PIXEL + CENTRE]),
+            Interpolated::Flat(colour) => *colour,
+            Interpolated::Affine(plane) => plane.colour(plane.value(x, y)),
+            Interpolated::Perspective(plane) => plane.colour(x, y),
+            Interpolated::Line(line) => line.colour(x, y),
+            Interpolated::Precise(plane) => plane.colour(x, y),
         }
     }
 
@@ -291,20 +182,50 @@ impl ColourPlane {
     #[must_use]
     pub fn shaded(self, vertex: [i32; 2], shade: &Shade<'_>) -> ColourPlane {
         match shade.pixel {
-            None => self,
+            None => ColourPlane::Interpolated(self),
             Some((shading, vertices)) => {
-                let plane = ShadedPlane::new(shading, vertex.map(|c| c >> 8), vertices);
-                ColourPlane::Shaded(Box::new((self, plane)))
+                let plane = || ShadedPlane::new(shading, vertex.map(|c| c >> 8), vertices);
+                let both = Called::new(|| Box::new((self, plane())));
+                both.map_or(ColourPlane::Interpolated(self), ColourPlane::Shaded)
             }
+        }
+    }
+}
+
+impl ColourPlane {
+    /// One colour; RGBA, R in 7:0.
+    #[must_use]
+    pub const fn flat(colour: u32) -> ColourPlane {
+        ColourPlane::Interpolated(Interpolated::Flat(colour))
+    }
+
+    /// The interpolated plane of a triangle.
+    #[must_use]
+    pub fn triangle(v: &ColourSource, interpolation: Interpolation) -> Interpolated {
+        Interpolated::triangle(v, interpolation)
+    }
+
+    /// The interpolated plane of a line or point.
+    #[must_use]
+    pub fn line(v: &ColourSource, interpolation: Interpolation) -> Interpolated {
+        Interpolated::line(v, interpolation)
+    }
+
+    /// Colour of pixel (`x`, `y`); RGBA, R in 7:0.
+    #[must_use]
+    pub fn colour(&self, x: i32, y: i32) -> u32 {
+        match self {
+            ColourPlane::Interpolated(plane) => plane.colour(x, y),
+            ColourPlane::Shaded(both) => both.1.colour(both.0.colour(x, y), [x * PIXEL + CENTRE, y * PIXEL + CENTRE]),
         }
     }
 
     /// Which of the wanted ones of 16 pixels from (`x`, `y`) on are holes, a bit each.
     #[inline(always)]
-    pub fn hole_lanes(&self, x: i32, y: i32, wanted: u16) -> u16 {
+    pub fn hole_lanes<S: Simd>(&self, simd: S, x: i32, y: i32, wanted: u16) -> u16 {
         match self {
-            ColourPlane::Shaded(both) => both.1.hole_lanes(x, y, wanted),
-            _ => 0,
+            ColourPlane::Shaded(both) => both.1.holes_of_sixteen(simd, x, y, wanted),
+            ColourPlane::Interpolated(_) => 0,
         }
     }
 
@@ -313,7 +234,7 @@ impl ColourPlane {
     pub fn is_hole(&self, x: i32, y: i32) -> bool {
         match self {
             ColourPlane::Shaded(both) => both.1.is_hole([x * PIXEL + CENTRE, y * PIXEL + CENTRE]),
-            _ => false,
+            ColourPlane::Interpolated(_) => false,
         }
     }
 }
@@ -393,6 +314,7 @@ impl PerspectivePlane {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::ScreenVertex;
     use crate::hidden::z_buffer::specification::covers;
     use proptest::prelude::*;
 

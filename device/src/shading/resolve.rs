@@ -6,7 +6,7 @@
 //!
 //! The lanes must equal the scalar functions of [`super::plane`] bit for bit.
 
-use super::plane::{AffinePlane, ColourPlane, PerspectivePlane};
+use super::plane::{AffinePlane, ColourPlane, Interpolated, PerspectivePlane};
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x16, i32x16, mask32x16, u32x16};
 use zga_abi::format::PixelFormat;
@@ -75,17 +75,25 @@ impl PixelRow for Row16<'_> {
     }
 }
 
+/// What colours of pixels come from.
+pub trait Sixteen {
+    /// Colours of those of the 16 pixels from (`x`, `y`) on that are wanted, a bit each; the others mean nothing.
+    fn sixteen<S: Simd>(&self, simd: S, x: i32, y: i32, wanted: u16) -> u32x16<S>;
+}
+
 /// Where the colour plane of a primitive comes from.
 pub trait Planes {
+    /// What colours come from. The kernel of [`Interpolated`] has no code for more.
+    type Plane: Sixteen;
+
     /// The plane of primitive `id`.
-    fn plane(&mut self, id: u32) -> &ColourPlane;
+    fn plane(&mut self, id: u32) -> &Self::Plane;
 }
 
 /// Shades the pixels of `row` that `ids` names; `ids[0]` stands at column `x0` of row `y`. The row
-/// holds whole chunks of [`LANES`] pixels. `SHADED`: planes may be [`ColourPlane::Shaded`]; the kernel of draws that call
-/// for interpolated colours alone has no code for more.
+/// holds whole chunks of [`LANES`] pixels.
 #[inline(always)]
-pub fn resolve_row<S: Simd, const SHADED: bool>(
+pub fn resolve_row<S: Simd>(
     simd: S,
     row: &mut impl PixelRow,
     ids: &[u32],
@@ -105,48 +113,44 @@ pub fn resolve_row<S: Simd, const SHADED: bool>(
             let id = chunk[left.trailing_zeros() as usize % LANES];
             let mine = ids.simd_eq(id);
             left &= !mine.to_bitmask();
-            let plane = planes.plane(id);
-            let shaded = if SHADED {
-                colours_at(simd, plane, x as i32, y as i32, mine.to_bitmask() as u16)
-            } else {
-                interpolated(simd, plane, x as i32, y as i32)
-            };
+            let shaded = planes.plane(id).sixteen(simd, x as i32, y as i32, mine.to_bitmask() as u16);
             colours = mine.select(shaded, colours);
         }
         row.put_chunk(simd, x, colours, seen);
     }
 }
 
-/// Colours of those of the 16 pixels from (`x`, `y`) on that are wanted, a bit each.
-#[inline(always)]
-pub(crate) fn colours_at<S: Simd>(simd: S, plane: &ColourPlane, x: i32, y: i32, wanted: u16) -> u32x16<S> {
-    match plane {
-        ColourPlane::Shaded(both) => {
-            let colours = interpolated(simd, &both.0, x, y).to_array();
-            u32x16::from_slice(simd, &both.1.lanes(colours, x, y, wanted))
+impl Sixteen for ColourPlane {
+    #[inline(always)]
+    fn sixteen<S: Simd>(&self, simd: S, x: i32, y: i32, wanted: u16) -> u32x16<S> {
+        match self {
+            ColourPlane::Interpolated(plane) => plane.sixteen(simd, x, y, wanted),
+            ColourPlane::Shaded(both) => {
+                let colours = both.0.sixteen(simd, x, y, wanted).to_array();
+                u32x16::from_slice(simd, &both.1.sixteen(simd, &colours, x, y, wanted))
+            }
         }
-        plane => interpolated(simd, plane, x, y),
     }
 }
 
-/// Interpolated colours of 16 pixels from (`x`, `y`) on.
-#[inline(always)]
-fn interpolated<S: Simd>(simd: S, plane: &ColourPlane, x: i32, y: i32) -> u32x16<S> {
-    match plane {
-        ColourPlane::Flat(colour) => u32x16::splat(simd, *colour),
-        ColourPlane::Affine(plane) => affine(simd, plane, x, y),
-        ColourPlane::Perspective(plane) => perspective(simd, plane, x, y),
-        ColourPlane::Line(line) => one_by_one(simd, |lane| line.colour(x + lane, y)),
-        ColourPlane::Precise(plane) => one_by_one(simd, |lane| plane.colour(x + lane, y)),
-        // Never one within another, nor in a draw without shading.
-        ColourPlane::Shaded(_) => u32x16::splat(simd, 0),
+impl Sixteen for Interpolated {
+    #[inline(always)]
+    fn sixteen<S: Simd>(&self, simd: S, x: i32, y: i32, _wanted: u16) -> u32x16<S> {
+        match self {
+            Interpolated::Flat(colour) => u32x16::splat(simd, *colour),
+            Interpolated::Affine(plane) => affine(simd, plane, x, y),
+            Interpolated::Perspective(plane) => perspective(simd, plane, x, y),
+            Interpolated::Line(_) | Interpolated::Precise(_) => u32x16::from_slice(simd, &one_by_one(self, x, y)),
+        }
     }
 }
 
-/// Colours of 16 pixels without the help of lanes.
-#[inline(always)]
-fn one_by_one<S: Simd>(simd: S, colour: impl Fn(i32) -> u32) -> u32x16<S> {
-    u32x16::from_slice(simd, &LANE.map(colour))
+/// Colours of 16 pixels without the help of lanes. Seldom called for, so apart from the kernels: it would take registers
+/// from what is.
+#[cold]
+#[inline(never)]
+fn one_by_one(plane: &Interpolated, x: i32, y: i32) -> [u32; LANES] {
+    LANE.map(|lane| plane.colour(x + lane, y))
 }
 
 /// Colours of 16 pixels from (`x`, `y`) on.

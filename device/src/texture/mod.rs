@@ -220,4 +220,4 @@ impl Texture {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -109,14 +109,20 @@ pub(super) fn subpixel_pool(claim: Claim) -> Result<u32, Fault> {
     Ok(claim.value)
 }
 
-/// The sub-pixel mask unit's registers; none where the grid is off. All of them are checked, grid or not.
+/// The sub-pixel mask unit's registers; none where the grid is off. All of them are checked, grid or not. A card without
+/// the unit (`capability` as in CAPABILITY_EFFECTS) has no grid.
 pub(super) fn subpixel(
+    capability: u32,
     grid: Claim,
     depth: Claim,
     resolve: Claim,
     pool: Claim,
 ) -> Result<Option<SubpixelSetting>, Fault> {
-    let grid = grid.mean(SubpixelGrid::from_code(grid.value))?;
+    let claim = grid;
+    let grid = claim.mean(SubpixelGrid::from_code(claim.value))?;
+    if grid != SubpixelGrid::Off && !Effects::from_bits_truncate(capability).contains(Effects::ANTI_ALIAS) {
+        return Err(claim.refuse(FaultCode::Unsupported));
+    }
     let depth = subpixel_depth(depth)?;
     let resolve = resolve.mean(SubpixelResolve::from_code(resolve.value))?;
     let pool = subpixel_pool(pool)?;

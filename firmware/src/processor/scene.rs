@@ -129,7 +129,13 @@ impl Scene {
             za,
             systolic: registers::systolic(systolic),
             tile: registers::tile_size(tile)?,
-            subpixel: registers::subpixel(grid, subpixel_depth, resolve, pool)?,
+            subpixel: registers::subpixel(
+                hardware.register(Reg::CapabilityEffects, 0),
+                grid,
+                subpixel_depth,
+                resolve,
+                pool,
+            )?,
             stencil,
         };
         Ok(Scene { registers: values, target })

@@ -341,7 +341,7 @@ impl Line<'_> {
     fn write(&self, row: &mut impl PixelRow, planes: &mut SeenPlanes<'_>) {
         let y = self.y as usize;
         match self.level {
-            Some(level) => dispatch!(level, simd => resolve_row::<_, true>(simd, row, self.tags, 0, y, planes)),
+            Some(level) => dispatch!(level, simd => resolve_row(simd, row, self.tags, 0, y, planes)),
             None => {
                 let tags = self.tags[..self.width].iter().enumerate().filter(|(_, tag)| **tag != 0);
                 tags.for_each(|(x, &tag)| row.put(x, planes.plane(tag).colour(x as i32, y as i32)));
@@ -364,7 +364,7 @@ const KEPT: usize = 1024;
 
 impl<'a> SeenPlanes<'a> {
     fn new(held: &'a Held) -> SeenPlanes<'a> {
-        SeenPlanes { held, tags: vec![0; KEPT], planes: vec![ColourPlane::Flat(0); KEPT] }
+        SeenPlanes { held, tags: vec![0; KEPT], planes: vec![ColourPlane::flat(0); KEPT] }
     }
 
     fn item(&self, tag: u32) -> Option<&'a Item> {
@@ -382,13 +382,15 @@ impl<'a> SeenPlanes<'a> {
     fn make(&self, tag: u32) -> ColourPlane {
         match self.item(tag) {
             Some(Item::Primitive(shape, draw)) => colour_plane(shape, &self.held.draws[*draw as usize].shade()),
-            Some(Item::Clear { colour, .. }) => ColourPlane::Flat(colour.unwrap_or(0)),
-            None => ColourPlane::Flat(0),
+            Some(Item::Clear { colour, .. }) => ColourPlane::flat(colour.unwrap_or(0)),
+            None => ColourPlane::flat(0),
         }
     }
 }
 
 impl Planes for SeenPlanes<'_> {
+    type Plane = ColourPlane;
+
     fn plane(&mut self, tag: u32) -> &ColourPlane {
         let place = tag as usize % KEPT;
         if self.tags[place] != tag {

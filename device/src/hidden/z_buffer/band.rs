@@ -9,14 +9,15 @@ use super::punched::Punched;
 use super::stencilled::StencilledPrimitive;
 use super::tile::{TILE, Tile, TileCounts};
 use super::{DepthTest, kernel};
+use crate::built::{Called, Key, PunchThroughKey, ShadingKey, StencilKey};
 use crate::geometry::plane::below;
 use crate::hidden::stencil::{StencilRows, Stencilled};
 use crate::hidden::za::band::TileBlocks;
 use crate::pipeline::bands::{Plane, Sight, Surfaces};
 use crate::shading::parameters::Parameters;
 use crate::shading::pixel::{PixelShading, ShadingCounts};
-use crate::shading::plane::{ColourPlane, ColourSource, Interpolation, Shade};
-use crate::shading::resolve::{Planes, Row16, Row32, resolve_row};
+use crate::shading::plane::{ColourPlane, ColourSource, Interpolated, Interpolation, Shade};
+use crate::shading::resolve::{Planes, Row16, Row32, Sixteen, resolve_row};
 use fearless_simd::{Level, Simd, dispatch};
 use std::sync::Arc;
 use zga_abi::format::{DepthFormat, PixelFormat};
@@ -34,7 +35,7 @@ pub struct Setting {
     /// What interpolated colours go through.
     pub shading: Option<Arc<DrawShading>>,
     /// Stencil test; `None` where it is not called for.
-    pub stencil: Option<StencilSetting>,
+    pub stencil: Option<Called<StencilKey, StencilSetting>>,
     /// The path takes whole segments: holes of a texture cut them.
     pub cuts_segments: bool,
     /// Pixels that may change, inside the target.
@@ -76,15 +77,18 @@ pub struct Scratch {
     pub(in crate::hidden) ids: Box<[u32; TILE * TILE]>,
     /// Place of each primitive's colour plane in `planes` plus 1; 0 is none yet.
     place: Vec<u32>,
-    /// Colour planes of the primitives that are seen.
-    planes: Vec<ColourPlane>,
+    /// Colour planes of the primitives that are seen, where colours are interpolated alone.
+    planes: Vec<Interpolated>,
+    /// The same where they go through more.
+    shaded: Vec<ColourPlane>,
     /// Blocks of a tile, once a path that has them has drawn.
     pub(in crate::hidden) blocks: Option<Box<TileBlocks>>,
 }
 
 impl Default for Scratch {
     fn default() -> Self {
-        Scratch { ids: Box::new([0; TILE * TILE]), place: Vec::new(), planes: Vec::new(), blocks: None }
+        let ids = Box::new([0; TILE * TILE]);
+        Scratch { ids, place: Vec::new(), planes: Vec::new(), shaded: Vec::new(), blocks: None }
     }
 }
 
@@ -99,7 +103,8 @@ impl Setting {
     /// Whether the texture has holes.
     #[must_use]
     pub fn has_holes(&self) -> bool {
-        self.shading.as_ref().is_some_and(|draw| draw.pixel.punch_through().is_some())
+        let called = || self.shading.as_ref().is_some_and(|draw| draw.pixel.punch_through().is_some());
+        PunchThroughKey::built().is_some() && called()
     }
 
     /// What looking for holes among so many fragments costs, where so many are holes; nothing without a texture that
@@ -138,6 +143,7 @@ impl Setting {
         let top = (band * TILE) as i32;
         let rows = [top.max(self.scissor.y as i32), (top + TILE as i32).min(self.scissor.bottom as i32)];
         let mut total = TileCounts::default();
+        let holes = self.has_holes();
         for column in 0..(self.width as usize).div_ceil(TILE) {
             let bins = || shares.iter().map(|share| share.tile(column, band));
             if bins().all(Bin::is_empty) {
@@ -159,9 +165,11 @@ impl Setting {
             };
             let mut first = 1;
             for bin in bins() {
+                // Apart, so that the one has no code of the other.
                 match &self.stencil {
-                    None => dispatch!(level, simd => self.draw_bin(simd, bin, first, &mut tile)),
                     Some(stencil) => self.draw_stencilled(&stencil.rule, bin, first, &mut tile, &mut values),
+                    None if holes => dispatch!(level, simd => self.draw_punched(simd, bin, first, &mut tile)),
+                    None => dispatch!(level, simd => self.draw_bin(simd, bin, first, &mut tile)),
                 }
                 first += bin.len() as u32;
             }
@@ -203,13 +211,9 @@ impl Setting {
         }
     }
 
-    /// Visibility of one share's primitives in one tile.
+    /// Visibility of one share's primitives in one tile, where the texture has no holes.
     #[inline(always)]
     fn draw_bin<S: Simd>(&self, simd: S, bin: &Bin, first: u32, tile: &mut Tile<'_>) {
-        if self.has_holes() {
-            self.draw_punched(bin, first, tile);
-            return;
-        }
         match self.test {
             None => self.draw_bin_with::<S, { kernel::NO_DEPTH }>(simd, bin, first, DepthTest::ALWAYS, tile),
             Some(test) if below(self.format) != 32 => {
@@ -222,19 +226,24 @@ impl Setting {
         }
     }
 
+    /// What knows the holes of a primitive of a bin; they do not depend on its vertices' colours.
+    #[must_use]
+    pub(in crate::hidden) fn hole_plane(&self, bin: &Bin, index: usize) -> Option<ColourPlane> {
+        let (source, number) = (bin.colours(index)?, bin.number(index)?);
+        Some(Interpolated::Flat(0).shaded(source.first_place(), &self.shade(number)))
+    }
+
     /// The same where the texture has holes.
     #[inline(always)]
-    fn draw_punched(&self, bin: &Bin, first: u32, tile: &mut Tile<'_>) {
+    fn draw_punched<S: Simd>(&self, simd: S, bin: &Bin, first: u32, tile: &mut Tile<'_>) {
         let (below, cuts) = (below(self.format), self.cuts_segments);
         for index in 0..bin.len() {
-            let (Some(source), Some(number)) = (bin.colours(index), bin.numbers.get(index)) else {
+            let Some(colours) = self.hole_plane(bin, index) else {
                 continue;
             };
-            // Holes do not depend on the vertices' colours.
-            let colours = ColourPlane::Flat(0).shaded(source.first_place(), &self.shade(*number));
             let punched = Punched { colours: &colours, id: first + index as u32, test: self.test, below, cuts };
             if let Some((triangle, _)) = bin.triangles.get(index) {
-                punched.triangle(triangle, tile);
+                punched.triangle(simd, triangle, tile);
             } else if let Some((line, _)) = bin.lines.get(index) {
                 punched.line(line, tile);
             } else if let Some((point, _)) = bin.points.get(index) {
@@ -257,8 +266,7 @@ impl Setting {
             let Some(source) = bin.colours(index) else {
                 continue;
             };
-            let number = bin.numbers.get(index).filter(|_| has_holes);
-            let holes = number.map(|number| ColourPlane::Flat(0).shaded(source.first_place(), &self.shade(*number)));
+            let holes = has_holes.then(|| self.hole_plane(bin, index)).flatten();
             let front = bin.triangles.is_empty() || source.runs_counter_clockwise();
             let primitive = StencilledPrimitive {
                 stencil: Stencilled { rule: *rule, front },
@@ -312,47 +320,47 @@ impl Setting {
         colour: &mut [u32],
         scratch: &mut Scratch,
     ) {
-        if self.shading.is_some() {
-            dispatch!(level, simd => self.resolve_with::<_, _, true>(simd, bins, x, top, touched, colour, scratch));
+        let Scratch { ids, place, planes, shaded, .. } = scratch;
+        place.clear();
+        place.resize(bins().map(Bin::len).sum(), 0);
+        if let (Some(_), Some(_)) = (&self.shading, ShadingKey::built()) {
+            shaded.clear();
+            let seen = SeenPlanes { bins, setting: self, place, planes: shaded };
+            dispatch!(level, simd => self.resolve_with(simd, seen, x, top, touched, colour, ids));
         } else {
-            dispatch!(level, simd => self.resolve_with::<_, _, false>(simd, bins, x, top, touched, colour, scratch));
+            planes.clear();
+            let seen = SeenPlanes { bins, setting: self, place, planes };
+            dispatch!(level, simd => self.resolve_with(simd, seen, x, top, touched, colour, ids));
         }
     }
 
     #[expect(clippy::too_many_arguments, reason = "inlined into its one caller at every SIMD level")]
     #[inline(always)]
-    fn resolve_with<'b, S: Simd, B: Iterator<Item = &'b Bin>, const SHADED: bool>(
+    fn resolve_with<S: Simd>(
         &self,
         simd: S,
-        bins: impl Fn() -> B,
+        mut planes: impl Planes,
         x: usize,
         top: i32,
         touched: [i32; 2],
         colour: &mut [u32],
-        scratch: &mut Scratch,
+        ids: &mut [u32; TILE * TILE],
     ) {
-        let Scratch { ids, place, planes, .. } = scratch;
-        planes.clear();
-        place.clear();
-        place.resize(bins().map(Bin::len).sum(), 0);
         // Pixels of a row up to its pitch: whole chunks, of which those beyond the target are never seen.
         let pixels = self.colour_pitch * 4 / self.pixel_format.bytes() as usize;
-        let mut planes = SeenPlanes::<_, SHADED> { bins, setting: self, place, planes };
+        let opaque = if self.pixel_format == PixelFormat::Xrgb8888 { 0xFF00_0000 } else { 0 };
         for y in touched[0]..touched[1] {
             let row = (y - top) as usize;
             let ids = &mut ids[row * TILE..][..TILE.min(pixels - x)];
             let words = &mut colour[row * self.colour_pitch..][..self.colour_pitch];
             let (y, planes) = (y as usize, &mut planes);
             match self.pixel_format {
-                PixelFormat::Xrgb8888 => {
-                    resolve_row::<_, SHADED>(simd, &mut Row32 { words, opaque: 0xFF00_0000 }, ids, x, y, planes);
-                }
-                PixelFormat::Argb8888 => {
-                    resolve_row::<_, SHADED>(simd, &mut Row32 { words, opaque: 0 }, ids, x, y, planes);
+                PixelFormat::Xrgb8888 | PixelFormat::Argb8888 => {
+                    resolve_row(simd, &mut Row32 { words, opaque }, ids, x, y, planes);
                 }
                 PixelFormat::Rgb565 => {
                     let pixels = bytemuck::cast_slice_mut(words);
-                    resolve_row::<_, SHADED>(simd, &mut Row16 { pixels }, ids, x, y, planes);
+                    resolve_row(simd, &mut Row16 { pixels }, ids, x, y, planes);
                 }
             }
             ids.fill(0);
@@ -361,21 +369,48 @@ impl Setting {
 }
 
 /// Colour planes of a tile's primitives, each made when it is first seen.
-struct SeenPlanes<'a, F, const SHADED: bool> {
+struct SeenPlanes<'a, F, P> {
     bins: F,
     setting: &'a Setting,
     place: &'a mut Vec<u32>,
-    planes: &'a mut Vec<ColourPlane>,
+    planes: &'a mut Vec<P>,
 }
 
-impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B, const SHADED: bool> SeenPlanes<'_, F, SHADED> {
-    /// The primitive that identifier `id` names: counted from 1 through the bins of the tile, of which
-    /// there is one for each share. Its number in the draw means something where it is asked for.
-    fn source(&self, id: u32) -> (&'b Bin, &'b ColourSource, u32) {
+/// A plane that is made from a primitive of a bin.
+trait Made: Sixteen {
+    /// That of primitive `index` of a bin, whose colours come from `source`.
+    fn make(setting: &Setting, bin: &Bin, index: usize, source: &ColourSource) -> Self;
+}
+
+impl Made for Interpolated {
+    #[inline(always)]
+    fn make(setting: &Setting, bin: &Bin, _index: usize, source: &ColourSource) -> Interpolated {
+        if bin.triangles.is_empty() {
+            Interpolated::line(source, setting.interpolation)
+        } else {
+            Interpolated::triangle(source, setting.interpolation)
+        }
+    }
+}
+
+impl Made for ColourPlane {
+    #[inline(always)]
+    fn make(setting: &Setting, bin: &Bin, index: usize, source: &ColourSource) -> ColourPlane {
+        let plane = Interpolated::make(setting, bin, index, source);
+        // Draws that are shaded have their numbers in the bins.
+        plane.shaded(source.first_place(), &setting.shade(bin.number(index).unwrap_or(0)))
+    }
+}
+
+impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B, P: Made> SeenPlanes<'_, F, P> {
+    /// Makes the plane of the primitive that identifier `id` names: counted from 1 through the bins of the tile, of
+    /// which there is one for each share.
+    #[inline(always)]
+    fn make(&self, id: u32) -> P {
         let mut index = id as usize - 1;
         for bin in (self.bins)() {
             match bin.colours(index) {
-                Some(source) => return (bin, source, bin.numbers.get(index).copied().unwrap_or(0)),
+                Some(source) => return P::make(self.setting, bin, index, source),
                 None => index -= bin.len(),
             }
         }
@@ -384,23 +419,15 @@ impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B, const SHADED: bool> SeenPlan
     }
 }
 
-impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B, const SHADED: bool> Planes for SeenPlanes<'_, F, SHADED> {
+impl<'b, B: Iterator<Item = &'b Bin>, F: Fn() -> B, P: Made> Planes for SeenPlanes<'_, F, P> {
+    type Plane = P;
+
     #[inline(always)]
-    fn plane(&mut self, id: u32) -> &ColourPlane {
+    fn plane(&mut self, id: u32) -> &P {
         let slot = id as usize - 1;
         if self.place[slot] == 0 {
-            let (bin, source, number) = self.source(id);
-            let interpolation = self.setting.interpolation;
-            let plane = if bin.triangles.is_empty() {
-                ColourPlane::line(source, interpolation)
-            } else {
-                ColourPlane::triangle(source, interpolation)
-            };
-            self.planes.push(if SHADED {
-                plane.shaded(source.first_place(), &self.setting.shade(number))
-            } else {
-                plane
-            });
+            let plane = self.make(id);
+            self.planes.push(plane);
             self.place[slot] = self.planes.len() as u32;
         }
         &self.planes[self.place[slot] as usize - 1]

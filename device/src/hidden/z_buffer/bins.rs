@@ -29,6 +29,10 @@ pub type Entry<T> = (T, ColourSource);
 /// Bytes of room that emptied bins keep for the next draw; beyond it all of it is given back.
 const KEPT: usize = 4 * LIMIT;
 
+/// Numbers of the primitives of a tile, apart from it: most draws have none.
+#[derive(Debug, Default)]
+struct Numbers(Vec<u32>);
+
 /// Primitives of one tile; a draw has one kind of them only.
 #[derive(Debug, Default)]
 pub struct Bin {
@@ -38,8 +42,8 @@ pub struct Bin {
     pub lines: Vec<Entry<Line>>,
     /// Points.
     pub points: Vec<Entry<Point>>,
-    /// Number of each primitive in the draw, where pixels are shaded by more than its colours; else empty.
-    pub numbers: Vec<u32>,
+    /// Number of each primitive in the draw, where pixels are shaded by more than its colours.
+    numbers: Option<Box<Numbers>>,
     /// Bytes of room when it was emptied last.
     room: usize,
 }
@@ -66,16 +70,25 @@ impl Bin {
         triangle.or_else(line).or_else(|| self.points.get(index).map(|(_, colours)| colours))
     }
 
+    /// The number of primitive `index` in the draw, where numbers are kept.
+    #[must_use]
+    pub fn number(&self, index: usize) -> Option<u32> {
+        self.numbers.as_ref()?.0.get(index).copied()
+    }
+
     /// Empties it; returns by how many bytes its room has grown.
     fn clear(&mut self) -> usize {
         self.triangles.clear();
         self.lines.clear();
         self.points.clear();
-        self.numbers.clear();
+        let numbers = self.numbers.as_mut().map_or(0, |numbers| {
+            numbers.0.clear();
+            numbers.0.capacity()
+        });
         let room = self.triangles.capacity() * size_of::<Entry<Triangle>>()
             + self.lines.capacity() * size_of::<Entry<Line>>()
             + self.points.capacity() * size_of::<Entry<Point>>()
-            + self.numbers.capacity() * size_of::<u32>();
+            + numbers * size_of::<u32>();
         room - std::mem::replace(&mut self.room, room)
     }
 }
@@ -134,16 +147,16 @@ impl Bins {
     }
 
     #[inline(always)]
-    fn bin<T, const NUMBERED: bool>(
+    fn bin<T>(
         &mut self,
         column: i32,
         row: i32,
-        number: u32,
+        number: Option<u32>,
         entries: fn(&mut Bin) -> &mut Vec<Entry<T>>,
     ) -> &mut Vec<Entry<T>> {
         let tile = row as usize * self.columns + column as usize;
-        if NUMBERED {
-            self.tiles[tile].numbers.push(number);
+        if let Some(number) = number {
+            self.tiles[tile].numbers.get_or_insert_default().0.push(number);
             self.bytes += size_of::<u32>();
         }
         let entries = entries(&mut self.tiles[tile]);
@@ -155,44 +168,63 @@ impl Bins {
     }
 }
 
-/// Bins that take primitives; `NUMBERED`: with their numbers in the draw, which only shading by more than colours asks
-/// for.
+/// Bins that take primitives. `NUMBERS`: with their numbers in the draw where these are asked for, as only shading by more
+/// than colours does; else there is no code for them.
 #[derive(Debug)]
-pub struct BinSink<'a, const NUMBERED: bool>(pub &'a mut Bins);
+pub struct BinSink<'a, const NUMBERS: bool> {
+    bins: &'a mut Bins,
+    numbers: bool,
+}
 
-impl<const NUMBERED: bool> Sink for BinSink<'_, NUMBERED> {
+impl<'a> BinSink<'a, false> {
+    /// Bins of a draw without numbers.
+    pub fn plain(bins: &'a mut Bins) -> Self {
+        BinSink { bins, numbers: false }
+    }
+}
+
+impl<'a> BinSink<'a, true> {
+    /// Bins of any draw; `numbers` are kept or not.
+    pub fn any(bins: &'a mut Bins, numbers: bool) -> Self {
+        BinSink { bins, numbers }
+    }
+}
+
+impl<const NUMBERS: bool> BinSink<'_, NUMBERS> {
+    /// The number to keep, if any.
+    #[inline(always)]
+    fn kept(&self, number: u32) -> Option<u32> {
+        (NUMBERS && self.numbers).then_some(number)
+    }
+}
+
+impl<const NUMBERS: bool> Sink for BinSink<'_, NUMBERS> {
     fn masked(&mut self, _vertices: &[ScreenVertex; 3], _number: u32) {}
 
     #[inline(always)]
     fn triangle(&mut self, triangle: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], number: u32) {
-        self.0.take_triangle::<NUMBERED>(triangle, columns, vertices, number);
+        self.bins.take_triangle(triangle, columns, vertices, self.kept(number));
     }
 
     #[inline(always)]
     fn line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: u32) {
-        self.0.take_line::<NUMBERED>(line, vertices, number);
+        self.bins.take_line(line, vertices, self.kept(number));
     }
 
     #[inline(always)]
     fn point(&mut self, point: &Point, vertex: &ScreenVertex, number: u32) {
-        self.0.take_point::<NUMBERED>(point, vertex, number);
+        self.bins.take_point(point, vertex, self.kept(number));
     }
 
     #[inline(always)]
     fn full(&self) -> bool {
-        self.0.bytes >= LIMIT || self.0.pixels >= PIXEL_LIMIT
+        self.bins.bytes >= LIMIT || self.bins.pixels >= PIXEL_LIMIT
     }
 }
 
 impl Bins {
     #[inline(always)]
-    fn take_triangle<const NUMBERED: bool>(
-        &mut self,
-        t: &Triangle,
-        columns: [i32; 2],
-        vertices: &[ScreenVertex; 3],
-        number: u32,
-    ) {
+    fn take_triangle(&mut self, t: &Triangle, columns: [i32; 2], vertices: &[ScreenVertex; 3], number: Option<u32>) {
         let area = self.area;
         let (left, right) = (columns[0].max(area[0]), columns[1].min(area[2]));
         let (top, bottom) = (t.rows[0].max(area[1]), t.rows[2].min(area[3]));
@@ -204,7 +236,7 @@ impl Bins {
         let (columns, rows) = ([left >> SHIFT, (right - 1) >> SHIFT], [top >> SHIFT, (bottom - 1) >> SHIFT]);
         if columns[0] == columns[1] {
             for row in rows[0]..=rows[1] {
-                self.bin::<_, NUMBERED>(columns[0], row, number, |bin| &mut bin.triangles).push((*t, colours));
+                self.bin(columns[0], row, number, |bin| &mut bin.triangles).push((*t, colours));
             }
             return;
         }
@@ -220,14 +252,14 @@ impl Bins {
             let (from, to) = (from.max(left), to.min(right));
             if from < to {
                 for column in from >> SHIFT..=(to - 1) >> SHIFT {
-                    self.bin::<_, NUMBERED>(column, row, number, |bin| &mut bin.triangles).push((*t, colours));
+                    self.bin(column, row, number, |bin| &mut bin.triangles).push((*t, colours));
                 }
             }
         }
     }
 
     #[inline(always)]
-    fn take_line<const NUMBERED: bool>(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: u32) {
+    fn take_line(&mut self, line: &Line, vertices: &[ScreenVertex; 2], number: Option<u32>) {
         let area = self.area;
         let x_major = line.axis == Axis::X;
         let (along, across) =
@@ -244,18 +276,18 @@ impl Bins {
             if from <= to {
                 for minor in from >> SHIFT..=to >> SHIFT {
                     let (column, row) = if x_major { (major, minor) } else { (minor, major) };
-                    self.bin::<_, NUMBERED>(column, row, number, |bin| &mut bin.lines).push((*line, colours));
+                    self.bin(column, row, number, |bin| &mut bin.lines).push((*line, colours));
                 }
             }
         }
     }
 
     #[inline(always)]
-    fn take_point<const NUMBERED: bool>(&mut self, point: &Point, vertex: &ScreenVertex, number: u32) {
+    fn take_point(&mut self, point: &Point, vertex: &ScreenVertex, number: Option<u32>) {
         let ([x, y], area) = (point.pixel, self.area);
         if (area[0]..area[2]).contains(&x) && (area[1]..area[3]).contains(&y) {
             let colours = ColourSource::new(&[*vertex; 3]);
-            self.bin::<_, NUMBERED>(x >> SHIFT, y >> SHIFT, number, |bin| &mut bin.points).push((*point, colours));
+            self.bin(x >> SHIFT, y >> SHIFT, number, |bin| &mut bin.points).push((*point, colours));
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::geometry::plane::{Axis, DepthPlane};
 use crate::geometry::triangle::Triangle;
 use crate::shading::parameters::LANES;
 use crate::shading::plane::ColourPlane;
+use fearless_simd::Simd;
 
 /// A draw whose texture has holes.
 pub struct Punched<'a> {
@@ -48,7 +49,7 @@ impl Punched<'_> {
 
     /// A triangle.
     #[inline(always)]
-    pub fn triangle(&self, t: &Triangle, tile: &mut Tile<'_>) {
+    pub fn triangle<S: Simd>(&self, simd: S, t: &Triangle, tile: &mut Tile<'_>) {
         let first = t.rows[0].max(tile.rows[0]);
         let beyond = t.rows[2].min(tile.rows[1]);
         if first >= beyond {
@@ -77,7 +78,7 @@ impl Punched<'_> {
                     *z = depth(&t.plane, x + lane as i32, y, self.below);
                     passed |= u16::from(self.passes(x + lane as i32, y, *z, tile)) << lane;
                 }
-                let holes = self.colours.hole_lanes(x, y, covered);
+                let holes = self.colours.hole_lanes(simd, x, y, covered);
                 tile.counts.holes += u64::from(holes.count_ones());
                 if self.cuts {
                     let solid = covered & !holes;

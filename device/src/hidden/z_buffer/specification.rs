@@ -106,7 +106,7 @@ fn primitive(
             let (column, row) = (x as usize, y as usize);
             let (z, at) = (plane.stored(plane.value(x, y), below), row * setting.depth_pitch + column);
             let passes = || setting.test.is_none_or(|test| test.passes(z, depth[at]));
-            let drawn = match &setting.stencil {
+            let drawn = match setting.stencil.as_deref() {
                 None => passes(),
                 Some(StencilSetting { rule, pitch }) => {
                     let stored = &mut stencil[row * pitch + column];

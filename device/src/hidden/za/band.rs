@@ -4,6 +4,7 @@
 //! pixels. Only for blocks that divide a host tile; bands then share no block.
 
 use super::blocks::Blocks;
+use super::holes::{Punched, Solid};
 use super::prediction::fits_64_bits;
 use super::tile::{Runs, Visits, ZaTile};
 use super::{ZaCounts, ZaDraw, kernel, steps};
@@ -50,6 +51,7 @@ impl ZaDraw {
         let height = (self.grid.size[1] as usize - band * TILE).min(TILE);
         let words = &mut words[..height.div_ceil(self.grid.block[1] as usize) * self.grid.across()];
         let rows = [top.max(pixels.scissor.y as i32), (top + TILE as i32).min(pixels.scissor.bottom as i32)];
+        let holes = pixels.has_holes();
         let mut total = ZaCounts::default();
         // Its own while it draws: the tile borrows both.
         let mut own = scratch.blocks.take().unwrap_or_default();
@@ -88,7 +90,12 @@ impl ZaDraw {
             };
             let mut first = 1;
             for bin in bins() {
-                dispatch!(level, simd => draw_bin(simd, bin, first, &mut tile));
+                // Apart, so that the one has no code of the other.
+                if holes {
+                    dispatch!(level, simd => draw_punched(simd, bin, first, &mut tile));
+                } else {
+                    dispatch!(level, simd => draw_bin(simd, bin, first, &mut tile));
+                }
                 first += bin.len() as u32;
             }
             dispatch!(level, simd => tile.finish(simd));
@@ -112,7 +119,7 @@ impl ZaTile<'_> {
     }
 }
 
-/// Visibility of one share's primitives in one tile.
+/// Visibility of one share's primitives in one tile, where the texture has no holes.
 #[inline(always)]
 fn draw_bin<S: Simd>(simd: S, bin: &Bin, first: u32, tile: &mut ZaTile<'_>) {
     match tile.draw.test() {
@@ -126,12 +133,46 @@ fn draw_bin<S: Simd>(simd: S, bin: &Bin, first: u32, tile: &mut ZaTile<'_>) {
 #[inline(always)]
 fn draw_bin_with<S: Simd, const MODE: u8>(simd: S, bin: &Bin, first: u32, tile: &mut ZaTile<'_>) {
     for ((triangle, _), id) in bin.triangles.iter().zip(first..) {
-        kernel::triangle::<S, MODE>(simd, triangle, id, tile);
+        kernel::triangle::<S, Solid, MODE>(simd, triangle, id, &Solid, tile);
     }
     for ((line, _), id) in bin.lines.iter().zip(first..) {
-        steps::line::<S, MODE>(simd, line, id, tile);
+        steps::line::<S, Solid, MODE>(simd, line, id, &Solid, tile);
     }
     for ((point, _), id) in bin.points.iter().zip(first..) {
-        steps::point::<S, MODE>(simd, point.pixel, point.z, id, tile);
+        steps::point::<S, Solid, MODE>(simd, point.pixel, point.z, id, &Solid, tile);
+    }
+}
+
+/// The same where the texture has holes.
+#[inline(always)]
+fn draw_punched<S: Simd>(simd: S, bin: &Bin, first: u32, tile: &mut ZaTile<'_>) {
+    for (index, id) in (0..bin.len()).zip(first..) {
+        let Some(colours) = tile.draw.pixels.hole_plane(bin, index) else {
+            continue;
+        };
+        match tile.draw.test() {
+            None => draw_one::<S, NO_DEPTH>(simd, bin, index, id, &Punched(&colours), tile),
+            Some(_) if tile.below != 32 => draw_one::<S, WIDE>(simd, bin, index, id, &Punched(&colours), tile),
+            Some(_) => draw_one::<S, GENERAL>(simd, bin, index, id, &Punched(&colours), tile),
+        }
+    }
+}
+
+/// One primitive of a bin.
+#[inline(always)]
+fn draw_one<S: Simd, const MODE: u8>(
+    simd: S,
+    bin: &Bin,
+    index: usize,
+    id: u32,
+    holes: &Punched<'_>,
+    tile: &mut ZaTile<'_>,
+) {
+    if let Some((triangle, _)) = bin.triangles.get(index) {
+        kernel::triangle::<S, _, MODE>(simd, triangle, id, holes, tile);
+    } else if let Some((line, _)) = bin.lines.get(index) {
+        steps::line::<S, _, MODE>(simd, line, id, holes, tile);
+    } else if let Some((point, _)) = bin.points.get(index) {
+        steps::point::<S, _, MODE>(simd, point.pixel, point.z, id, holes, tile);
     }
 }

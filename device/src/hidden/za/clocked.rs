@@ -41,7 +41,7 @@ use crate::geometry::plane::DepthPlane;
 use crate::hidden::stencil::{Stencilled, is_front};
 use crate::hidden::z_buffer::band::StencilSetting;
 use crate::hidden::z_buffer::specification::colour_plane;
-use crate::shading::plane::{AffinePlane, ColourPlane};
+use crate::shading::plane::{AffinePlane, ColourPlane, Interpolated};
 use zga_abi::format::ZaPrediction;
 use zga_firmware::checked::Rectangle;
 
@@ -156,7 +156,7 @@ impl<'d> Unit<'d> {
             state: State::Idle,
             counts: ZaCounts::default(),
             depths: Predictor { plane, steep: false, below: 0 },
-            colours: Colours::Divided(ColourPlane::Flat(0)),
+            colours: Colours::Divided(ColourPlane::flat(0)),
             is_triangle: false,
             front: true,
             walker: Walker::default(),
@@ -186,7 +186,7 @@ impl<'d> Unit<'d> {
     pub fn load(&mut self, shape: &Shape, number: u32) {
         self.depths = Predictor::new(shape, self.draw.pixels.format);
         self.colours = match colour_plane(shape, &self.draw.pixels.shade(number)) {
-            ColourPlane::Affine(plane) => {
+            ColourPlane::Interpolated(Interpolated::Affine(plane)) => {
                 let (here, right) = (plane.value(0, 0), plane.value(1, 0));
                 Colours::Stepped(plane, [0, 1, 2, 3].map(|k| right[k].wrapping_sub(here[k])))
             }
@@ -507,7 +507,7 @@ impl<'d> Unit<'d> {
 
     /// The stencil value's clock, before the pixel's own; returns whether this one was it.
     fn test_stencil(&mut self, row: Option<usize>, stored: i32, surfaces: &mut Surfaces<'_>) -> bool {
-        let (Some(StencilSetting { rule, pitch }), Some(row)) = (self.draw.pixels.stencil, row) else {
+        let (Some(&StencilSetting { rule, pitch }), Some(row)) = (self.draw.pixels.stencil.as_deref(), row) else {
             return false;
         };
         if self.verdict.is_some() || self.is_hole() {

@@ -14,6 +14,7 @@
 //! [`super::specification`].
 
 use super::blocks::{LANE, ones};
+use super::holes::Holes;
 use super::prediction::clocks;
 use super::tile::ZaTile;
 use crate::geometry::triangle::Triangle;
@@ -32,13 +33,14 @@ const FEW_COLUMNS: usize = 4;
 
 /// Draws triangle `t`, whose identifier is `id`.
 #[inline(always)]
-pub fn triangle<S: Simd, const MODE: u8>(simd: S, t: &Triangle, id: u32, tile: &mut ZaTile<'_>) {
+pub fn triangle<S: Simd, H: Holes, const MODE: u8>(simd: S, t: &Triangle, id: u32, holes: &H, tile: &mut ZaTile<'_>) {
     let first = t.rows[0].max(tile.pixels.rows[0]);
     let beyond = t.rows[2].min(tile.pixels.rows[1]);
     if first >= beyond {
         return;
     }
-    if beyond - first == tile.pixels.rows[1] - tile.pixels.rows[0] && whole::<S, MODE>(simd, t, id, tile) {
+    let tall = beyond - first == tile.pixels.rows[1] - tile.pixels.rows[0];
+    if !H::ANY && tall && whole::<S, MODE>(simd, t, id, tile) {
         return;
     }
     let covered = walk(simd, t, first..beyond, tile);
@@ -53,11 +55,11 @@ pub fn triangle<S: Simd, const MODE: u8>(simd: S, t: &Triangle, id: u32, tile: &
     } else {
         is_hidden(simd, t, look, tile).then_some(true)
     };
-    let drawn = visit::<S, MODE>(simd, t, all, tile);
+    let drawn = visit::<S, H, MODE>(simd, t, all, tile);
     if drawn.rows != 0 {
         tile.pixels.counts.rows_touched(first, beyond);
         tile.blocks.floor = tile.blocks.floor.min(t.plane.minimum);
-        rows::<S, MODE>(simd, t, id, &drawn, tile);
+        rows::<S, H, MODE>(simd, t, id, holes, &drawn, tile);
     }
 }
 
@@ -112,7 +114,7 @@ struct Drawn {
 /// Initialises cleared blocks and decides which of the others are bypassed, where it is not known already that
 /// all of them are or none is.
 #[inline(always)]
-fn visit<S: Simd, const MODE: u8>(simd: S, t: &Triangle, all: Option<bool>, tile: &mut ZaTile<'_>) -> Drawn {
+fn visit<S: Simd, H: Holes, const MODE: u8>(simd: S, t: &Triangle, all: Option<bool>, tile: &mut ZaTile<'_>) -> Drawn {
     let mut drawn = Drawn { rows: 0, mixed: 0, fresh: 0 };
     for column in 0..tile.blocks.columns {
         let touched = tile.runs.touched[column];
@@ -158,7 +160,7 @@ fn visit<S: Simd, const MODE: u8>(simd: S, t: &Triangle, all: Option<bool>, tile
             let rows = touched & tile.blocks.rows(fresh);
             tile.visits.initialised += u64::from(fresh.count_ones());
             tile.visits.initialised_pixels += tile.blocks.pixels(column, fresh);
-            if MODE == NO_DEPTH {
+            if MODE == NO_DEPTH && !H::ANY {
                 tile.visits.initialised_passed += tile.fragments(column, rows);
             } else {
                 tile.note_fresh(column, rows, drawn.fresh);
@@ -295,7 +297,14 @@ impl ZaTile<'_> {
 
 /// Draws the rows that meet blocks which are not bypassed.
 #[inline(always)]
-fn rows<S: Simd, const MODE: u8>(simd: S, t: &Triangle, id: u32, drawn: &Drawn, tile: &mut ZaTile<'_>) {
+fn rows<S: Simd, H: Holes, const MODE: u8>(
+    simd: S,
+    t: &Triangle,
+    id: u32,
+    holes: &H,
+    drawn: &Drawn,
+    tile: &mut ZaTile<'_>,
+) {
     let lanes = Lanes::new(simd, &t.plane, id, tile.test);
     let (x, reach) = (tile.pixels.x, tile.pixels.reach);
     let origin = t.plane.value(x, tile.pixels.band_y);
@@ -306,6 +315,7 @@ fn rows<S: Simd, const MODE: u8>(simd: S, t: &Triangle, id: u32, drawn: &Drawn, 
         let row = left.trailing_zeros() as usize % TILE;
         left &= left - 1;
         let value = origin.wrapping_add((row as i64).wrapping_mul(t.plane.dy));
+        let is_fresh = (drawn.fresh >> row) & 1 != 0;
         let ids = &mut tile.pixels.ids[row * TILE..][..TILE];
         let depth: &mut [i32] = if MODE == NO_DEPTH {
             &mut []
@@ -323,6 +333,22 @@ fn rows<S: Simd, const MODE: u8>(simd: S, t: &Triangle, id: u32, drawn: &Drawn, 
             }
             (from, count, rest) = next_run((ones(count) << from) & columns);
         }
+        if H::ANY {
+            let covered = (ones(count) << from) | rest;
+            let found = holes.on_row(simd, x, tile.pixels.band_y + row as i32, covered);
+            tile.counts.fragments += u64::from(covered.count_ones());
+            tile.counts.holes += u64::from(found.count_ones());
+            let solid = covered & !found;
+            if MODE == NO_DEPTH {
+                let fresh = if is_fresh { tile.runs.fresh[row] } else { 0 };
+                tile.visits.initialised_passed += u64::from((solid & fresh).count_ones());
+                tile.visits.unpainted += u64::from((found & !fresh).count_ones());
+            }
+            if solid == 0 {
+                continue;
+            }
+            (from, count, rest) = next_run(solid);
+        }
         let mut bits = 0;
         loop {
             bits |= run::<S, MODE>(simd, &lanes, t, id, tile.test, tile.below, depth, ids, value, from, count);
@@ -335,7 +361,7 @@ fn rows<S: Simd, const MODE: u8>(simd: S, t: &Triangle, id: u32, drawn: &Drawn, 
             continue;
         }
         passed += bits.count_ones();
-        if (drawn.fresh >> row) & 1 != 0 {
+        if is_fresh {
             fresh_passed += (bits & tile.runs.fresh[row]).count_ones();
         }
         if watch {

@@ -17,7 +17,7 @@
 //! | [`prediction`] | the nearest that a primitive can be in a block: three ways |
 //! | [`specification`] | what must come out, pixel by pixel |
 //! | [`clocked`], `walk` | the unit register by register, a state a clock |
-//! | [`band`], [`tile`], [`blocks`], [`kernel`], [`steps`] | the fast path: host tiles, sixteen pixels at a time |
+//! | [`band`], [`tile`], [`blocks`], [`kernel`], [`steps`], [`holes`] | the fast path: host tiles, sixteen pixels at a time |
 //! | [`memory`] | clears; cleared blocks brought to memory; words taken from a Z buffer |
 //!
 //! # Visits
@@ -83,6 +83,7 @@ pub mod band;
 pub mod blocks;
 pub mod clocked;
 pub mod grid;
+pub mod holes;
 pub mod kernel;
 pub mod memory;
 pub mod prediction;

@@ -154,9 +154,9 @@ fn compare(
         let (column, row) = (x as usize, y as usize);
         let (z, place) = (primitive.depth([x, y]), row * draw.pixels.depth_pitch + column);
         let passes = || test.is_none_or(|test| test.passes(z, surfaces.depth[place]));
-        let drawn = match draw.pixels.stencil {
+        let drawn = match draw.pixels.stencil.as_deref() {
             None => passes(),
-            Some(StencilSetting { rule, pitch }) => {
+            Some(&StencilSetting { rule, pitch }) => {
                 let stored = &mut surfaces.stencil[row * pitch + column];
                 let stencilled = Stencilled { rule, front: primitive.front };
                 let drawn = stencilled.decide(stored, &mut counts.stencil, passes);

@@ -1,5 +1,6 @@
 //! Lines and points against a host tile of the Za path: block by block, pixel by pixel.
 
+use super::holes::Holes;
 use super::prediction::clocks;
 use super::tile::ZaTile;
 use crate::geometry::line::Line;
@@ -96,13 +97,22 @@ impl ZaTile<'_> {
     }
 }
 
+impl ZaTile<'_> {
+    /// Counts the fragments of a visit that was not bypassed, of which some were holes.
+    fn count_holes<const MODE: u8>(&mut self, fresh: bool, fragments: u64, holes: u64) {
+        self.counts.fragments += fragments;
+        self.counts.holes += holes;
+        self.visits.unpainted += if MODE == NO_DEPTH && !fresh { holes } else { 0 };
+    }
+}
+
 /// Draws the steps of a line that fall into the tile.
 #[inline(always)]
-pub fn line<S: Simd, const MODE: u8>(simd: S, line: &Line, id: u32, tile: &mut ZaTile<'_>) {
-    let one_row = MODE != NO_DEPTH && tile.blocks.height() == 1;
+pub fn line<S: Simd, H: Holes, const MODE: u8>(simd: S, line: &Line, id: u32, holes: &H, tile: &mut ZaTile<'_>) {
+    let one_row = !H::ANY && MODE != NO_DEPTH && tile.blocks.height() == 1;
     match (line.axis, one_row) {
-        (Axis::X, false) => steps::<S, MODE, true>(simd, line, id, tile),
-        (Axis::Y, false) => steps::<S, MODE, false>(simd, line, id, tile),
+        (Axis::X, false) => steps::<S, H, MODE, true>(simd, line, id, holes, tile),
+        (Axis::Y, false) => steps::<S, H, MODE, false>(simd, line, id, holes, tile),
         (Axis::X, true) => one_row_steps::<S, MODE, true>(simd, line, id, tile),
         (Axis::Y, true) => one_row_steps::<S, MODE, false>(simd, line, id, tile),
     }
@@ -236,7 +246,13 @@ fn last_on_row(mut walk: i64, slope: i64, step: i32, beyond: i32) -> i32 {
 
 /// Draws the steps of a line along X or along Y.
 #[inline(always)]
-fn steps<S: Simd, const MODE: u8, const ALONG_X: bool>(simd: S, line: &Line, id: u32, tile: &mut ZaTile<'_>) {
+fn steps<S: Simd, H: Holes, const MODE: u8, const ALONG_X: bool>(
+    simd: S,
+    line: &Line,
+    id: u32,
+    holes: &H,
+    tile: &mut ZaTile<'_>,
+) {
     let pixels = &tile.pixels;
     let (along, across) = if ALONG_X { (pixels.columns, pixels.rows) } else { (pixels.rows, pixels.columns) };
     let (first, beyond) = (line.steps[0].max(along[0]), line.steps[1].min(along[1]));
@@ -302,21 +318,35 @@ fn steps<S: Simd, const MODE: u8, const ALONG_X: bool>(simd: S, line: &Line, id:
             value = value.wrapping_add((fragments as i64).wrapping_mul(gradient));
             continue;
         };
-        let (mut walk, mut passed) = (begun, 0);
+        let (mut walk, mut passed, mut unpainted) = (begun, 0, 0);
         for step in run..step {
             let at = (walk >> WALK) as i32;
             let (x, y) = if ALONG_X { (step, at) } else { (at, step) };
-            passed += u64::from(tile.fragment::<MODE>(x, y, plane.stored(value, below), id));
+            if H::ANY && holes.at(x, y) {
+                unpainted += 1;
+            } else {
+                passed += u64::from(tile.fragment::<MODE>(x, y, plane.stored(value, below), id));
+            }
             walk = walk.wrapping_add(line.slope);
             value = value.wrapping_add(gradient);
         }
         tile.end(fresh, passed);
+        if H::ANY {
+            tile.count_holes::<MODE>(fresh, fragments, unpainted);
+        }
     }
 }
 
 /// Draws a point.
 #[inline(always)]
-pub fn point<S: Simd, const MODE: u8>(simd: S, pixel: [i32; 2], z: i32, id: u32, tile: &mut ZaTile<'_>) {
+pub fn point<S: Simd, H: Holes, const MODE: u8>(
+    simd: S,
+    pixel: [i32; 2],
+    z: i32,
+    id: u32,
+    holes: &H,
+    tile: &mut ZaTile<'_>,
+) {
     let [x, y] = pixel;
     let pixels = &tile.pixels;
     if !(pixels.columns[0]..pixels.columns[1]).contains(&x) || !(pixels.rows[0]..pixels.rows[1]).contains(&y) {
@@ -331,7 +361,11 @@ pub fn point<S: Simd, const MODE: u8>(simd: S, pixel: [i32; 2], z: i32, id: u32,
     tile.pixels.counts.rows_touched(y, y + 1);
     let plane = DepthPlane { minimum: z, maximum: z, ..DepthPlane::default() };
     if let Some(fresh) = tile.begin::<S, MODE>(simd, &visit, &plane, || z) {
-        let passed = u64::from(tile.fragment::<MODE>(x, y, z, id));
+        let hole = H::ANY && holes.at(x, y);
+        let passed = u64::from(!hole && tile.fragment::<MODE>(x, y, z, id));
         tile.end(fresh, passed);
+        if H::ANY {
+            tile.count_holes::<MODE>(fresh, 1, u64::from(hole));
+        }
     }
 }

@@ -54,6 +54,8 @@ pub struct Visits {
     pub compared_fragments: u64,
     /// Fragments in them that passed a test.
     pub compared_passed: u64,
+    /// Fragments in them that were holes, where there is no test.
+    pub unpainted: u64,
     /// Clocks of predictions.
     pub prediction: u64,
 }
@@ -92,7 +94,12 @@ impl ZaTile<'_> {
     /// All events of the tile. Sums of what one visit after another would count: see [`ZaCounts`].
     pub fn events(&self) -> ZaCounts {
         let (visits, tested) = (&self.visits, self.draw.test().is_some());
-        let passed = if tested { visits.compared_passed } else { visits.compared_fragments };
+        // Without a test a clock goes to every fragment of the run, holes too.
+        let (passed, painting) = if tested {
+            (visits.compared_passed, visits.compared_passed)
+        } else {
+            (visits.compared_fragments - visits.unpainted, visits.compared_fragments)
+        };
         let reads = match (tested, self.writes) {
             (false, _) => 0,
             (true, true) => visits.compared_pixels,
@@ -101,7 +108,7 @@ impl ZaTile<'_> {
         let words = if self.writes { visits.compared } else { 0 };
         let initial_depths = if self.draw.depth_buffer { visits.initialised_pixels } else { 0 };
         self.counts.plus(ZaCounts {
-            // Holes and stencil tests take another way.
+            // Holes are counted where they are looked for; stencil tests take another way.
             fragments: 0,
             holes: 0,
             stencil: StencilCounts::default(),
@@ -121,7 +128,7 @@ impl ZaTile<'_> {
                 + visits.compared
                 + visits.prediction
                 + reads
-                + passed
+                + painting
                 + words,
         })
     }

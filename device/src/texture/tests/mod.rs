@@ -10,7 +10,7 @@ use zga_abi::format::{TextureFilter, TextureFormat, TextureFunction};
 use zga_firmware::checked;
 
 /// A texture of RGBA words without levels, clamped and read by its nearest texel.
-pub(super) fn plain(size: [u32; 2]) -> checked::Texture {
+pub(crate) fn plain(size: [u32; 2]) -> checked::Texture {
     checked::Texture {
         base: 0,
         size,
@@ -30,7 +30,7 @@ pub(super) fn plain(size: [u32; 2]) -> checked::Texture {
 }
 
 /// Words without a pattern: a full-period generator modulo 2^64, its high half.
-pub(super) fn noise(words: usize, seed: u64) -> Vec<u32> {
+pub(crate) fn noise(words: usize, seed: u64) -> Vec<u32> {
     let mut state = seed.wrapping_mul(2) + 1;
     let step = |_| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -2,13 +2,23 @@
 
 use super::random::{Figure, figure, rectangle, state};
 use super::*;
+use crate::built::Called;
+use crate::geometry::GeometryRegisters;
 use crate::geometry::assembly::Sink;
-use crate::hidden::z_buffer::band::Scratch;
+use crate::geometry::transform::Transform;
+use crate::hidden::z_buffer::band::{DrawShading, Scratch};
 use crate::hidden::z_buffer::bins::{BinSink, Bins};
 use crate::hidden::z_buffer::tile::TILE;
+use crate::shading::parameters::{ParameterTransform, VertexParameters};
+use crate::shading::pixel::{PixelShading, Textured};
+use crate::texture::Texture;
+use crate::texture::tests::{noise, plain};
 use fearless_simd::Level;
 use proptest::prelude::*;
 use proptest::sample::select;
+use std::sync::Arc;
+use zga_abi::Effects;
+use zga_abi::format::Topology;
 
 /// Every SIMD level that this host can run, the widest first.
 fn levels() -> Vec<Level> {
@@ -22,15 +32,15 @@ fn levels() -> Vec<Level> {
 }
 
 /// Puts a primitive into bins.
-fn bin(shape: &Shape, bins: &mut Bins, format: DepthFormat) {
-    let mut bins = BinSink::<false>(bins);
+fn bin(shape: &Shape, number: u32, bins: &mut Bins, pixels: &Setting) {
+    let (mut bins, format) = (BinSink::any(bins, pixels.shading.is_some()), pixels.format);
     match shape {
         Shape::Triangle(_, v) => {
             let (triangle, columns) = Triangle::new(v, format).expect("it was one before");
-            bins.triangle(&triangle, columns, v, 0);
+            bins.triangle(&triangle, columns, v, number);
         }
-        Shape::Line(line, v) => bins.line(line, v, 0),
-        Shape::Point(point, v) => bins.point(point, v, 0),
+        Shape::Line(line, v) => bins.line(line, v, number),
+        Shape::Point(point, v) => bins.point(point, v, number),
     }
 }
 
@@ -42,8 +52,8 @@ fn fast_draw(draw: &ZaDraw, level: Level, shares: usize, shapes: &[Shape], memor
     for share in 0..shares {
         let mut share_bins = Bins::default();
         share_bins.reset(width, height, draw.pixels.scissor);
-        shapes.iter().skip(share * each).take(each).for_each(|shape| {
-            bin(shape, &mut share_bins, draw.pixels.format);
+        shapes.iter().zip(0..).skip(share * each).take(each).for_each(|(shape, number)| {
+            bin(shape, number, &mut share_bins, &draw.pixels);
         });
         bins.push(share_bins);
     }
@@ -114,6 +124,50 @@ fn before(frame: &Frame, seed: u32, cleared: u8) -> Memory {
     memory
 }
 
+/// A texture of which about half are holes, in runs of some pixels, over each of the primitives.
+fn punched(shapes: &[Shape], seed: u64, frame: &Frame) -> Arc<DrawShading> {
+    let size = [16, 8];
+    let texels = noise(size[0] as usize * size[1] as usize, seed);
+    let texture = Texture::decode(&texels, &plain(size));
+    let identity: [f32; 16] = std::array::from_fn(|k| if k % 5 == 0 { 1.0 } else { 0.0 });
+    let registers = GeometryRegisters {
+        object_eye: identity,
+        decal: identity,
+        eye_clip: identity,
+        viewport: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+    };
+    let topology = match shapes.first() {
+        Some(Shape::Line(..)) => Topology::Lines,
+        Some(Shape::Point(..)) => Topology::Points,
+        _ => Topology::Triangles,
+    };
+    let one: [[f64; 4]; 4] = std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c))));
+    let transform = ParameterTransform {
+        screen: Transform::new(&registers, Effects::empty(), frame.grid.size, frame.depth_format, 8),
+        eye: one,
+        normal: std::array::from_fn(|r| std::array::from_fn(|c| one[r][c])),
+        perspective: false,
+        topology,
+    };
+    let vertex = |v: &ScreenVertex, coordinates: [f32; 2]| VertexParameters {
+        position: [v.x as f32 / 256.0, v.y as f32 / 256.0, 0.0],
+        coordinates,
+        ..VertexParameters::default()
+    };
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.3, 1.0]];
+    let vertices = shapes.iter().map(|shape| {
+        let v = match shape {
+            Shape::Triangle(_, v) => *v,
+            Shape::Line(_, v) => [v[0], v[1], v[1]],
+            Shape::Point(_, v) => [*v; 3],
+        };
+        [0, 1, 2].map(|k| vertex(&v[k], corners[k]))
+    });
+    let textured = Called::new(|| Textured { texture: Arc::new(texture), punch_through: Called::new(|| 128) });
+    let pixel = Arc::new(PixelShading { transform, light: None, texture: textured, fog: None });
+    Arc::new(DrawShading { pixel, first: 0, vertices: vertices.collect() })
+}
+
 /// Draws, one after another, by the specification and at every level; all must be equal after each.
 fn check(
     frame: &Frame,
@@ -121,11 +175,13 @@ fn check(
     mut memory: Memory,
     draws: &[(State, Vec<Figure>)],
     shares: usize,
+    holes: Option<u64>,
 ) -> Result<(), TestCaseError> {
     for (state, figures) in draws {
-        let draw = za_draw(frame, background, state);
-        prop_assert!(draw.fast());
         let shapes: Vec<Shape> = figures.iter().filter_map(|figure| figure.shape(frame.depth_format)).collect();
+        let mut draw = za_draw(frame, background, state);
+        draw.pixels.shading = holes.map(|seed| punched(&shapes, seed, frame));
+        prop_assert!(draw.fast());
         let begun = memory.clone();
         let counts = specification::draw(&draw, shapes.iter().zip(0..), &mut memory.surfaces());
         for level in levels() {
@@ -159,7 +215,18 @@ proptest! {
     ) {
         let depth = (u64::from(share_of_range) * u64::from(frame.depth_format.maximum()) / 0xFFFF) as i32;
         let background = Background { pixel: 0x1234_5678 & if frame.pixel_format == PixelFormat::Rgb565 { 0xFFFF } else { u32::MAX }, depth };
-        check(&frame, background, before(&frame, seed, cleared), &draws, shares)?;
+        check(&frame, background, before(&frame, seed, cleared), &draws, shares, None)?;
+    }
+
+    #[test]
+    fn fast_random_draws_with_holes_equal_the_specification(
+        (frame, draws) in scene(),
+        seed: u32,
+        cleared in 0_u8..3,
+        shares in 1_usize..4,
+    ) {
+        let background = Background { pixel: 0x1234, depth: frame.depth_format.maximum() as i32 };
+        check(&frame, background, before(&frame, seed, cleared), &draws, shares, Some(u64::from(seed)))?;
     }
 
     #[test]
@@ -186,7 +253,7 @@ proptest! {
             bypass: true,
         };
         let background = Background { pixel: 0x4321, depth: frame.depth_format.maximum() as i32 };
-        check(&frame, background, before(&frame, 3, 0), &[(state, figures)], 1)?;
+        check(&frame, background, before(&frame, 3, 0), &[(state, figures)], 1, None)?;
     }
 
     #[test]
@@ -245,7 +312,7 @@ proptest! {
             bypass: true,
         };
         let background = Background { pixel: 0x4321, depth: frame.depth_format.maximum() as i32 };
-        check(&frame, background, before(&frame, 7, cleared), &[(state, figures)], 2)?;
+        check(&frame, background, before(&frame, 7, cleared), &[(state, figures)], 2, None)?;
     }
 }
 
