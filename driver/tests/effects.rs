@@ -1,17 +1,17 @@
-//! Lights, materials, fog and blending: what the driver sends for them, against numbers restated from the manual.
+//! Lights, materials, fog, blending, stencil and shadows: what the driver sends for them, against numbers restated from the manual.
 
 mod common;
 
 use std::time::Duration;
 
 use common::{opcodes, target, triangle};
-use zga_abi::format::{BlendMode, Topology};
+use zga_abi::format::{BlendMode, DepthFunction, StencilOperation, Topology};
 use zga_abi::registers::Reg;
 use zga_abi::{Fault, FaultCode};
 use zga_driver::bus::{MockAccess, MockBus, Pace};
 use zga_driver::{
-    Antialias, Camera, Driver, DriverError, DriverOptions, Fog, FogCurve, Light, LightSource, Material, Submit, Target,
-    Vertex, Vertices,
+    Antialias, Camera, Driver, DriverError, DriverOptions, Fog, FogCurve, Light, LightSource, Material, Shadow,
+    Stencil, StencilSide, Submit, Target, TargetOptions, Vertex, Vertices,
 };
 
 const EFFECTS: u32 = 0x0280;
@@ -22,6 +22,7 @@ const LIGHT: u32 = 1 << 6;
 const FOG: u32 = 1 << 7;
 const BLEND: u32 = 1 << 8;
 const ANTI_ALIAS: u32 = 1 << 10;
+const STENCIL: u32 = 1 << 11;
 
 const BLEND_CONTROL: u32 = 0x0324;
 /// FOG_CONTROL, FOG_DENSITY, FOG_END, DEPTH_CUE_SCALE, DEPTH_CUE_OFFSET, FOG_COLOUR.
@@ -467,4 +468,101 @@ fn card_without_the_units_refuses_what_calls_for_them() {
     driver.set_scene_ambient(None).expect("none is always possible");
     driver.set_fog(None).expect("none is always possible");
     driver.set_blend(None).expect("none is always possible");
+}
+
+/// STENCIL_BASE, STENCIL_PITCH; STENCIL_CONTROL, STENCIL_VALUE; SHADOW_CONTROL, SHADOW_INTENSITY.
+const STENCIL_REGISTERS: [u32; 6] = [0x021C, 0x0220, 0x0328, 0x032C, 0x0380, 0x0384];
+
+fn stencil_target(driver: &mut Driver<MockBus>) -> Target {
+    driver.create_target(TargetOptions { stencil: true, ..TargetOptions::new(64, 48) }).expect("room")
+}
+
+#[test]
+fn stencil_and_shadow_reach_their_registers() {
+    let mut driver = driver();
+    let target = stencil_target(&mut driver);
+    let side = StencilSide {
+        fail: StencilOperation::Zero,
+        depth_fail: StencilOperation::Replace,
+        pass: StencilOperation::Increment,
+    };
+    let back = StencilSide { fail: StencilOperation::DecrementWrap, ..StencilSide::KEEP };
+    let stencil = Stencil {
+        function: DepthFunction::Less,
+        reference: 0x12,
+        read_mask: 0x34,
+        write_mask: 0x56,
+        front: side,
+        back,
+        colours: false,
+    };
+    driver.set_stencil(Some(stencil)).expect("there");
+    let shadow = Shadow { function: DepthFunction::Equal, reference: 3, read_mask: 0x0F, intensity: 99 };
+    driver.set_shadow(Some(shadow)).expect("there");
+    let effects = triangles(&mut driver, &target);
+    assert_eq!(effects & STENCIL, STENCIL);
+    let [base, pitch, control, value, shadow_control, intensity] = registers(&driver, STENCIL_REGISTERS);
+    assert!(base != 0 && base.is_multiple_of(64));
+    assert_eq!((pitch, control, value), (64, 0x0073_2111, 0x0056_3412));
+    assert_eq!((shadow_control, intensity), (0x000F_0321, 99));
+
+    // As the card resets it, once there is none.
+    driver.set_stencil(None).expect("there");
+    driver.set_shadow(None).expect("there");
+    assert_eq!(triangles(&mut driver, &target) & STENCIL, 0);
+    assert_eq!(registers(&driver, [0x0380]), [0x00FF_0050]);
+}
+
+#[test]
+fn shadow_volume_counts_by_depth_fail_with_colours_off() {
+    let mut driver = driver();
+    let target = stencil_target(&mut driver);
+    driver.set_stencil(Some(Stencil::shadow_volume())).expect("there");
+    triangles(&mut driver, &target);
+    // Always; colours off; front: decrement-wrap where depth fails, back: increment-wrap.
+    assert_eq!(registers(&driver, [0x0328, 0x032C]), [0x0600_7017, 0x00FF_FF00]);
+}
+
+#[test]
+fn clear_with_stencil_puts_its_value_beside_the_planes() {
+    let mut driver = driver();
+    let target = stencil_target(&mut driver);
+    driver.begin_scene(&target).expect("begins");
+    driver.clear_with_stencil(None, None, Some(0xA5)).expect("clears");
+    driver.clear_with_stencil(Some(WHITE), None, Some(1)).expect("clears");
+    driver.end_scene().expect("ends");
+    driver.finish().expect("done");
+    let memory = driver.bus().memory();
+    let clears = |planes: u32| memory.windows(2).any(|words| words == [0x0400_0003, planes]);
+    assert!(clears(0xA504) && clears(0x0105));
+}
+
+#[test]
+fn stencil_without_a_plane_with_samples_or_beside_blending_is_refused_before_it_is_sent() {
+    let mut driver = driver();
+    let plain = target(&mut driver);
+    let target = stencil_target(&mut driver);
+    driver.set_stencil(Some(Stencil::shadow_volume())).expect("there");
+    driver.begin_scene(&plain).expect("begins");
+    let refused = driver.draw_vertices(Topology::Triangles, &with_normals(), None);
+    assert!(matches!(refused, Err(DriverError::NoStencilPlane { .. })), "{refused:?}");
+    let refused = driver.clear_with_stencil(None, None, Some(0));
+    assert!(matches!(refused, Err(DriverError::NoStencilPlane { .. })), "{refused:?}");
+    driver.end_scene().expect("ends");
+
+    driver.set_blend(true).expect("there");
+    driver.begin_scene(&target).expect("begins");
+    let refused = driver.draw_vertices(Topology::Triangles, &with_normals(), None);
+    assert!(matches!(refused, Err(DriverError::StencilRefused { .. })), "{refused:?}");
+    // To be tested is no harm.
+    driver.set_stencil(Some(Stencil { function: DepthFunction::Equal, ..Stencil::default() })).expect("there");
+    driver.draw_vertices(Topology::Triangles, &with_normals(), None).expect("draws");
+    driver.end_scene().expect("ends");
+
+    driver.set_blend(None).expect("there");
+    driver.set_antialias(Some(Antialias::default())).expect("there");
+    driver.begin_scene(&target).expect("begins");
+    let refused = driver.draw_vertices(Topology::Triangles, &with_normals(), None);
+    assert_eq!(refused.expect_err("refused").to_string(), "a stencil test does not go with anti-aliasing");
+    driver.end_scene().expect("ends");
 }

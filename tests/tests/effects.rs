@@ -1,4 +1,4 @@
-//! Texture, light, fog, blending and holes: the card against the oracle, and against itself in every way it can draw.
+//! Texture, light, fog, blending, holes and stencil tests: the card against the oracle, and against itself in every way it can draw.
 //!
 //! Visibility, the order of layers, nearest texels, texture functions and blending of flat colours have one right answer,
 //! and no tolerance. What is interpolated is compared with f64 within what the card's roundings can add up to
@@ -19,6 +19,8 @@ mod layers;
 mod light;
 #[path = "effects/power.rs"]
 mod power;
+#[path = "effects/stencil.rs"]
+mod stencil;
 #[path = "effects/texture.rs"]
 mod texture;
 #[path = "effects/ways.rs"]

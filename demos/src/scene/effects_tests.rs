@@ -79,6 +79,39 @@ fn parse_every_name_of_an_effect_is_known() {
 }
 
 #[test]
+fn parse_stencil_and_shadow_have_defaults_and_every_field() {
+    let text = r#"{"size": [1,1], "draw": [], "shadow": {"function": "less", "reference": 2, "read_mask": 7, "intensity": 90},
+        "materials": {"a": {"stencil": {}}, "b": {"depth_write": false, "stencil": {"function": "equal", "reference": 3,
+        "read_mask": 15, "write_mask": 240, "front": {"fail": "zero", "depth_fail": "invert", "pass": "replace"},
+        "back": {"pass": "decrement-wrap"}, "colours": false}}}}"#;
+    let scene = parse(text).expect("valid");
+    let shadow = Shadow { function: DepthFunction::Less, reference: 2, read_mask: 7, intensity: 90 };
+    assert_eq!(scene.shadow, Some(shadow));
+    assert_eq!((scene.materials["a"].stencil, scene.materials["a"].depth_write), (Some(Stencil::default()), true));
+    let front = StencilSide {
+        fail: StencilOperation::Zero,
+        depth_fail: StencilOperation::Invert,
+        pass: StencilOperation::Replace,
+    };
+    let back = StencilSide { pass: StencilOperation::DecrementWrap, ..StencilSide::KEEP };
+    let (function, colours) = (DepthFunction::Equal, false);
+    let stencil = Stencil { function, reference: 3, read_mask: 15, write_mask: 240, front, back, colours };
+    assert_eq!((scene.materials["b"].stencil, scene.materials["b"].depth_write), (Some(stencil), false));
+    let plain = parse(r#"{"size": [1,1], "draw": [], "shadow": {}}"#).expect("valid");
+    assert_eq!(plain.shadow, Some(Shadow::default()));
+}
+
+#[test]
+fn parse_wrong_stencil_fields_name_path_and_reason() {
+    let material = |rest: &str| fault(&format!(r#"{{"size": [1,1], "draw": [], "materials": {{"m": {{{rest}}}}}}}"#));
+    assert_eq!(material(r#""stencil": {"reference": 256}"#)[0], "materials.m.stencil.reference");
+    assert_eq!(material(r#""stencil": {"function": "nearer"}"#)[0], "materials.m.stencil.function");
+    assert_eq!(material(r#""stencil": {"front": {"fail": "add"}}"#)[0], "materials.m.stencil.front.fail");
+    assert_eq!(material(r#""stencil": {"mask": 1}"#)[0], "materials.m.stencil.mask");
+    assert_eq!(fault(r#"{"size": [1,1], "draw": [], "shadow": {"intensity": -1}}"#)[0], "shadow.intensity");
+}
+
+#[test]
 fn load_textures_are_read_once_and_faults_name_their_field() {
     let folder = std::env::temp_dir().join(format!("zga-scene-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");

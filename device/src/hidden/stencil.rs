@@ -188,16 +188,16 @@ pub fn fill(memory: &mut [u32], target: &Target, area: &Rectangle, value: u8) ->
     Clocks(u64::from((area.right - area.x).div_ceil(LINE)) * u64::from(area.bottom - area.y))
 }
 
-/// Runs of pixels in shadow on each row, one after another: row, first column, first column beyond.
+/// Runs of pixels in shadow on `lines` of a target, one after another: row, first column, first column beyond.
 #[must_use]
-pub fn shadowed(memory: &[u32], target: &Target, shadow: &Shadow) -> Vec<[u32; 3]> {
+pub fn shadowed(memory: &[u32], target: &Target, shadow: &Shadow, lines: Range<u32>) -> Vec<[u32; 3]> {
     let Some(plane) = target.stencil else {
         return Vec::new();
     };
     let dark: Vec<bool> = (0..=255).map(|value| shadow.test.passes(value)).collect();
     let rows: &[u8] = bytemuck::cast_slice(&memory[words(target)]);
     let mut runs = Vec::new();
-    for (row, y) in rows.chunks_exact(plane.pitch as usize).zip(0..) {
+    for (row, y) in rows.chunks_exact(plane.pitch as usize).skip(lines.start as usize).zip(lines) {
         let mut x = 0;
         for run in row[..target.colour.width as usize].chunk_by(|a, b| dark[usize::from(*a)] == dark[usize::from(*b)]) {
             let beyond = x + run.len() as u32;
@@ -236,9 +236,14 @@ pub fn darken(colours: &mut [u32], surface: &Surface, runs: &[[u32; 3]], intensi
     }
 }
 
-/// Charges the shadow bit over a whole target, to the unit of its path.
-pub fn charge_shadow(target: &Target, runs: &[[u32; 3]], account: &mut Account) {
-    let pixels: u64 = runs.iter().map(|&[_, first, beyond]| u64::from(beyond - first)).sum();
+/// Pixels of runs.
+#[must_use]
+pub fn pixels(runs: &[[u32; 3]]) -> u64 {
+    runs.iter().map(|&[_, first, beyond]| u64::from(beyond - first)).sum()
+}
+
+/// Charges the shadow bit over a whole target, of which so many pixels were in shadow, to the unit of its path.
+pub fn charge_shadow(target: &Target, pixels: u64, account: &mut Account) {
     let lines = u64::from(target.colour.width.div_ceil(LINE)) * u64::from(target.colour.height);
     account.add(Counter::StencilShadowed, pixels);
     account.add(Counter::ColourWrites, pixels);
@@ -325,9 +330,10 @@ mod tests {
         assert_eq!((memory[32], memory[33], memory[48], memory[49]), (0, 0xFFFF_FF00, 0x0303_0300, 0xFFFF_FF00));
         assert_eq!([0, 1, 3, 4].map(|x| value_at(&memory, &target, x, 1)), [0, 3, 3, 0]);
         let test = StencilTest { function: DepthFunction::NotEqual, reference: 0, read_mask: 0xFF };
-        assert_eq!(shadowed(&memory, &target, &Shadow { test, intensity: 0 }), [[1, 1, 4]]);
+        assert_eq!(shadowed(&memory, &target, &Shadow { test, intensity: 0 }, 0..2), [[1, 1, 4]]);
         let test = StencilTest { function: DepthFunction::Equal, ..test };
-        assert_eq!(shadowed(&memory, &target, &Shadow { test, intensity: 0 }), [[0, 0, 5], [1, 0, 1], [1, 4, 5]]);
+        assert_eq!(shadowed(&memory, &target, &Shadow { test, intensity: 0 }, 0..2), [[0, 0, 5], [1, 0, 1], [1, 4, 5]]);
+        assert_eq!(shadowed(&memory, &target, &Shadow { test, intensity: 0 }, 1..2), [[1, 0, 1], [1, 4, 5]]);
     }
 
     #[test]
@@ -345,7 +351,7 @@ mod tests {
     #[test]
     fn charge_shadow_reads_the_plane_and_writes_what_is_darkened() {
         let mut account = Account::default();
-        charge_shadow(&target(PixelFormat::Rgb565), &[[0, 0, 5], [1, 2, 4]], &mut account);
+        charge_shadow(&target(PixelFormat::Rgb565), pixels(&[[0, 0, 5], [1, 2, 4]]), &mut account);
         let found = [Counter::StencilShadowed, Counter::ColourWrites, Counter::CyclesTile].map(|c| account.get(c));
         assert_eq!(found, [7, 7, 9]);
     }

@@ -11,15 +11,25 @@ use crate::probe::account::Account;
 use zga_abi::format::HiddenSurface;
 use zga_firmware::checked::{Rectangle, Shadow, Target};
 
+/// Rows whose pixels in shadow are held at once.
+const ROWS: u32 = 64;
+
 /// Darkens the pixels of a target that are in shadow.
 pub(super) fn darken(memory: &mut VideoMemory, target: &Target, shadow: &Shadow, account: &mut Account) {
-    let runs = stencil::shadowed(memory.words(), target, shadow);
-    if target.hidden_surface == HiddenSurface::Za {
-        let places: Vec<Rectangle> =
-            runs.iter().map(|&[y, x, right]| Rectangle { x, y, right, bottom: y + 1 }).collect();
-        za_path::settle_places(memory, &places, account);
+    let (mut pixels, height) = (0, target.colour.height);
+    for first in (0..height).step_by(ROWS as usize) {
+        let runs = stencil::shadowed(memory.words(), target, shadow, first..(first + ROWS).min(height));
+        if runs.is_empty() {
+            continue;
+        }
+        if target.hidden_surface == HiddenSurface::Za {
+            let place = |&[y, x, right]: &[u32; 3]| Rectangle { x, y, right, bottom: y + 1 };
+            let places: Vec<Rectangle> = runs.iter().map(place).collect();
+            za_path::settle_places(memory, &places, account);
+        }
+        let (colours, _) = surfaces(memory.drawing(), target);
+        stencil::darken(colours, &target.colour, &runs, shadow.intensity);
+        pixels += stencil::pixels(&runs);
     }
-    let (colours, _) = surfaces(memory.drawing(), target);
-    stencil::darken(colours, &target.colour, &runs, shadow.intensity);
-    stencil::charge_shadow(target, &runs, account);
+    stencil::charge_shadow(target, pixels, account);
 }

@@ -271,5 +271,6 @@ pub fn registers(state: &State, region: u32, [width, height]: [u32; 2]) -> Regis
         blend,
         fog: state.look.fog_words(),
         light: state.look.light_words(region),
+        stencil: state.stencil.as_ref().map_or([7, 0], State::stencil_words),
     }
 }

@@ -5,6 +5,7 @@ use super::options::{Options, Pixels, State};
 use super::picture::Picture;
 use super::screen::{Screen, Topology};
 use crate::oracle::effects::{Colour, Corner, Memory, Painting, RawDraw, Shade};
+use crate::oracle::stencil::Shadow;
 use std::fmt;
 
 /// A card with a target, the same target of the oracle, and the region that both read textures and lights from.
@@ -30,6 +31,8 @@ pub struct Comparison {
     pub wrong: usize,
     /// Pixels that hold another depth.
     pub depths: usize,
+    /// Pixels that hold another stencil value.
+    pub stencils: usize,
     /// Words written outside the target.
     pub strays: usize,
     /// Largest distance of a channel from the oracle's, in levels.
@@ -44,14 +47,18 @@ impl Comparison {
     /// Whether everything is as it must be.
     #[must_use]
     pub const fn right(&self) -> bool {
-        self.wrong == 0 && self.depths == 0 && self.strays == 0
+        self.wrong == 0 && self.depths == 0 && self.stencils == 0 && self.strays == 0
     }
 }
 
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { pixels, doubtful, drawn, wrong, depths, strays, largest, mean, first } = self;
-        write!(f, "{pixels} pixels ({drawn} drawn, {doubtful} in doubt), {wrong} colours and {depths} depths wrong, ")?;
+        let Self { pixels, doubtful, drawn, wrong, depths, stencils, strays, largest, mean, first } = self;
+        write!(
+            f,
+            "{pixels} pixels ({drawn} drawn, {doubtful} in doubt), {wrong} colours, {depths} depths and {stencils} "
+        )?;
+        write!(f, "stencil values wrong, ")?;
         write!(f, "{strays} stray words; errors {largest:.3} at most, {mean:.4} on average")?;
         first.as_ref().map_or(Ok(()), |first| write!(f, "; first {first}"))
     }
@@ -115,6 +122,19 @@ impl Stage {
         self.painting.clear(area.unwrap_or([0, 0, self.size[0], self.size[1]]), colour, depth);
     }
 
+    /// Clears stencil values of a rectangle; of all pixels without one.
+    pub fn clear_stencil(&mut self, value: u8, area: Option<[u32; 4]>) {
+        self.screen.clear_all_planes(None, None, Some(value), area);
+        self.painting.clear_stencil(area.unwrap_or([0, 0, self.size[0], self.size[1]]), value);
+    }
+
+    /// Ends a scene that has tested stencil values, with pixels in shadow darkened, and compares.
+    pub fn end_in_shadow(&mut self, shadow: &Shadow) -> (Picture, Comparison, Vec<Shade>) {
+        self.screen.set_shadow(Some(shadow));
+        self.painting.darken(shadow);
+        self.end()
+    }
+
     /// Draws on both.
     pub fn draw(&mut self, topology: Topology, corners: &[Corner], state: &State) {
         self.screen.draw_corners(topology, corners, state);
@@ -144,12 +164,14 @@ impl Stage {
 
     fn against(&self, picture: &Picture, shades: &[Shade], depth_buffer: bool) -> Comparison {
         let mut found = Comparison { pixels: shades.len(), strays: picture.strays, ..Comparison::default() };
-        let depths = self.painting.depths();
+        let (depths, stencils) = (self.painting.depths(), self.painting.stencils());
         for (k, shade) in shades.iter().enumerate() {
             let (i, j) = (k as u32 % self.size[0], k as u32 / self.size[0]);
             let colour = load(picture.pixels, picture.colour[k]);
             let depth_wrong = depth_buffer && depths[k].is_some_and(|z| z != picture.depth[k]);
             found.depths += usize::from(depth_wrong);
+            let stencil_wrong = stencils[k].zip(picture.stencil.get(k)).is_some_and(|(must, found)| must != *found);
+            found.stencils += usize::from(stencil_wrong);
             let wrong = !shade.admits(colour);
             found.wrong += usize::from(wrong);
             if (wrong || depth_wrong) && found.first.is_none() {

@@ -6,8 +6,8 @@
 //! | comparator: depth (1 / z) | depth bits | stored depth |
 //! | comparator: t0, t1, t2 | 3 x 49 | numerators: edge functions reach 2^48 and have a sign |
 //! | comparator: window | 4 | fog and depth cueing of one of 16 windows; not driven yet |
-//! | comparator: stencil | 8 | not driven yet |
-//! | comparator: shadow | 1 | not driven yet |
+//! | comparator: stencil | 8 | stencil value; driven in scenes that ask for it |
+//! | comparator: shadow | 1 | whether that says shadow when the scene ends |
 //! | parameter buffer, a polygon | 3 x 160 + 49 + 32 | vertices (x, y, z, colour, 1 / w), doubled area, draw and kind |
 //! | colour buffer, a pixel | 32 + 1 | colour, written or not |
 //! | the same where depths are stored | + 32 | depth |

@@ -4,7 +4,10 @@
 //! *layer* until the scene ends or its pixel is cleared; then it is tested by its own depth function against the
 //! pixel's opaque depth, stores none, and is composed from the farthest to the nearest, of equal depths the earlier
 //! first. A layer without a depth test is nearer than all with one. What is opaque and has no depth test hides the layers
-//! before it.
+//! before it, unless a stencil test lets it through.
+//!
+//! With a stencil test a fragment that is no hole comes to that first. A layer comes to it when it is composed, and
+//! changes nothing. Before that, pixels in shadow are darkened.
 //!
 //! Visibility and order are exact. Colours are as [`super::shade`] knows them: exact while all that was composed is.
 
@@ -13,6 +16,7 @@ use std::cmp::Reverse;
 use super::super::canvas::{Area, Test};
 use super::super::depth::PrescribedDepth;
 use super::super::raster::for_each_pixel;
+use super::super::stencil::{Shadow, Stencil, shows_front};
 use super::super::{DepthFormat, DepthFunction, Primitive};
 use super::shade::{Fragment, Shade};
 use super::{Colour, blend};
@@ -32,6 +36,7 @@ struct Layer {
     depth: Option<u32>,
     function: Option<DepthFunction>,
     mode: u32,
+    stencil: Option<Stencil>,
     shade: Shade,
 }
 
@@ -39,6 +44,7 @@ struct Layer {
 struct Pixel {
     shade: Shade,
     depth: u32,
+    stencil: u8,
     /// Whether the depth, or what is visible, is in doubt.
     torn: bool,
     /// In order of submission.
@@ -61,7 +67,7 @@ impl Painting {
     #[must_use]
     pub fn new([width, height]: [u32; 2], format: DepthFormat, store: fn(Colour) -> Colour) -> Self {
         let black = Shade::exactly(store([0; 4]));
-        let pixel = Pixel { shade: black, depth: format.greatest(), torn: false, layers: vec![] };
+        let pixel = Pixel { shade: black, depth: format.greatest(), stencil: 0, torn: false, layers: vec![] };
         Self { width, height, format, store, pixels: vec![pixel; (width * height) as usize] }
     }
 
@@ -94,11 +100,49 @@ impl Painting {
         }
     }
 
+    /// Clears stencil values of a rectangle, whose layers are composed first.
+    pub fn clear_stencil(&mut self, area: Area, value: u8) {
+        self.clear(area, None, None);
+        let [left, top, right, bottom] = area;
+        for j in top..bottom.min(self.height) {
+            for i in left..right.min(self.width) {
+                self.pixels[(j * self.width + i) as usize].stencil = value;
+            }
+        }
+    }
+
+    /// Darkens the pixels in shadow; the scene ends next.
+    pub fn darken(&mut self, shadow: &Shadow) {
+        let store = self.store;
+        for pixel in self.pixels.iter_mut().filter(|pixel| shadow.falls_on(pixel.stencil)) {
+            let part = f64::from(shadow.intensity) / 255.0;
+            let Shade { colour: [r, g, b, a], tolerance, doubt } = pixel.shade;
+            pixel.shade = match pixel.shade.exact() {
+                Some([r, g, b, a]) => {
+                    let [r, g, b] = [r, g, b].map(|level| shadow.darken(level));
+                    Shade { doubt, ..Shade::exactly(store([r, g, b, a])) }
+                }
+                // A level that is off by the tolerance, and rounded.
+                None => Shade {
+                    colour: [r * part, g * part, b * part, a],
+                    tolerance: tolerance.max(tolerance * part + 0.5),
+                    doubt,
+                },
+            };
+        }
+    }
+
+    /// Stored stencil values; `None` where they are in doubt.
+    #[must_use]
+    pub fn stencils(&self) -> Vec<Option<u8>> {
+        self.pixels.iter().map(|pixel| (!pixel.torn).then_some(pixel.stencil)).collect()
+    }
+
     /// Draws a primitive whose fragments are what `fragment` says for a column and row.
     pub fn draw(&mut self, primitive: &Primitive, brush: &Brush, mut fragment: impl FnMut(i32, i32) -> Fragment) {
         let Some(plane) = PrescribedDepth::new(primitive, self.format) else { return };
-        let Test { function, write, scissor: [left, top, right, bottom], .. } = brush.test;
-        let (width, height, store) = (self.width, self.height, self.store);
+        let Test { function, write, scissor: [left, top, right, bottom], stencil } = brush.test;
+        let (width, height, store, front) = (self.width, self.height, self.store, shows_front(primitive));
         for_each_pixel(primitive, width, height, |i, j| {
             if !(left..right).contains(&i) || !(top..bottom).contains(&j) {
                 return;
@@ -111,14 +155,20 @@ impl Painting {
                 return;
             }
             if let Some(mode) = brush.mode {
-                pixel.layers.push(Layer { depth: function.map(|_| depth), function, mode, shade });
+                pixel.layers.push(Layer { depth: function.map(|_| depth), function, mode, stencil, shade });
                 return;
             }
-            if function.is_none() {
+            if function.is_none() && stencil.is_none() {
                 pixel.layers.clear();
             }
-            if function.is_none_or(|function| function.passes(&depth, &pixel.depth)) {
-                pixel.shade = stored(shade, store);
+            let mut drawn = function.is_none_or(|function| function.passes(&depth, &pixel.depth));
+            if let Some(stencil) = &stencil {
+                (drawn, pixel.stencil) = stencil.outcome(front, pixel.stencil, drawn);
+            }
+            if drawn {
+                if stencil.is_none_or(|stencil| stencil.colours) {
+                    pixel.shade = stored(shade, store);
+                }
                 pixel.depth = if function.is_some() && write { depth } else { pixel.depth };
             }
         });
@@ -158,7 +208,9 @@ impl Pixel {
             return;
         }
         let passes = |layer: &Layer| layer.depth.zip(layer.function).is_none_or(|(z, f)| f.passes(&z, &self.depth));
-        let mut seen: Vec<Layer> = self.layers.drain(..).filter(passes).collect();
+        let value = self.stencil;
+        let tested = |layer: &Layer| layer.stencil.is_none_or(|stencil| stencil.outcome(true, value, true).0);
+        let mut seen: Vec<Layer> = self.layers.drain(..).filter(passes).filter(tested).collect();
         // Stable: of equals the earlier is composed first. Without a depth last.
         seen.sort_by_key(|layer| Reverse(layer.depth.map_or(-1, i64::from)));
         for layer in seen {

@@ -11,6 +11,7 @@ use super::super::canvas::Test;
 use super::super::clip::{Homogeneous, snap, stored_depth};
 use super::super::exact::from_card_f32;
 use super::super::raster::line::is_x_major;
+use super::super::stencil::{Operation, Stencil};
 use super::super::{DepthFunction, Primitive, Vertex};
 use super::fog::Fog;
 use super::light::{Lighting, eye_position, normal_matrix, normalised, transformed};
@@ -28,6 +29,7 @@ const LIGHT: u32 = 6;
 const FOG: u32 = 7;
 const BLEND: u32 = 8;
 const PUNCH_THROUGH: u32 = 9;
+const STENCIL: u32 = 11;
 
 /// A vertex as a packet carries it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -67,6 +69,8 @@ pub struct Registers {
     pub fog: [u32; 6],
     /// LIGHT_CONTROL to MATERIAL_SHININESS.
     pub light: [u32; 7],
+    /// STENCIL_CONTROL, STENCIL_VALUE.
+    pub stencil: [u32; 2],
 }
 
 /// A draw of triangles, lines or points.
@@ -126,7 +130,23 @@ impl Registers {
     fn test(&self) -> Test {
         let function = DepthFunction::ALL[(self.depth_control & 7) as usize];
         let function = self.calls(DEPTH).then_some(function);
-        Test { function, write: self.depth_control >> 8 & 1 == 1, scissor: self.scissor, stencil: None }
+        Test { function, write: self.depth_control >> 8 & 1 == 1, scissor: self.scissor, stencil: self.stencil() }
+    }
+
+    /// The stencil test, where it is called for.
+    fn stencil(&self) -> Option<Stencil> {
+        let [control, value] = self.stencil;
+        let operations = |low: u32| [0, 4, 8].map(|more| Operation::ALL[(control >> (low + more) & 7) as usize]);
+        let [reference, read_mask, write_mask, _] = value.to_le_bytes();
+        self.calls(STENCIL).then(|| Stencil {
+            function: DepthFunction::ALL[(control & 7) as usize],
+            reference,
+            read_mask,
+            write_mask,
+            front: operations(8),
+            back: operations(20),
+            colours: control >> 4 & 1 == 0,
+        })
     }
 
     /// The blend mode of a primitive, unless it can be known to be opaque.

@@ -20,6 +20,7 @@ fn registers(effects: u32) -> Registers {
         blend: 0,
         fog: [1, 0, 2.0_f32.to_bits(), 0, 0, 0x0000_00FF],
         light: [0, 0, 0, 0x0000_80FF, 0, 0, 0],
+        stencil: [7, 0],
     }
 }
 
