@@ -13,40 +13,28 @@
 //! Inputs from: colours of layers and pixels, RGBA, R in 7:0. Outputs to: [`super::tile`], [`super::pixels`],
 //! [`super::specification`]. Clocks: 1 a fragment blended.
 
+use crate::shading::levels::{mix8, mul8};
 use fearless_simd::prelude::*;
 use fearless_simd::{u16x32, u32x16};
 use zga_abi::format::BlendMode;
 
-/// The product of two levels, where 255 stands for 1; to the nearest.
-#[must_use]
-pub fn mul8(a: u32, b: u32) -> u32 {
-    (a * b + 127) / 255
-}
-
-/// From level `a` to level `b`, by the share `t` of 255.
-#[must_use]
-pub fn mix8(a: u32, b: u32, t: u32) -> u32 {
-    (a * (255 - t) + b * t + 127) / 255
-}
-
 /// A layer of colour `source` over a pixel of colour `behind`.
 #[must_use]
 pub fn over(mode: BlendMode, behind: u32, source: u32) -> u32 {
-    let [behind, source] = [behind, source].map(|colour| colour.to_le_bytes().map(u32::from));
+    let [behind, source] = [behind, source].map(u32::to_le_bytes);
     let (alpha, last) = (source[3], behind[3]);
-    let levels = [0, 1, 2, 3].map(|k| {
+    u32::from_le_bytes([0, 1, 2, 3].map(|k| {
         let (d, s) = (behind[k], source[k]);
         match (mode, k) {
             (BlendMode::Alpha, 3) => mix8(last, 255, alpha),
             (BlendMode::Alpha, _) => mix8(d, s, alpha),
             (BlendMode::Add | BlendMode::Multiply, 3) => last,
-            (BlendMode::Add, _) => 255.min(d + mul8(s, alpha)),
+            (BlendMode::Add, _) => d.saturating_add(mul8(s, alpha)),
             (BlendMode::Multiply, _) => mul8(d, 255 - mul8(alpha, 255 - s)),
-            (BlendMode::Premultiplied, 3) => 255.min(alpha + mul8(last, 255 - alpha)),
-            (BlendMode::Premultiplied, _) => 255.min(s + mul8(d, 255 - alpha)),
+            (BlendMode::Premultiplied, 3) => alpha.saturating_add(mul8(last, 255 - alpha)),
+            (BlendMode::Premultiplied, _) => s.saturating_add(mul8(d, 255 - alpha)),
         }
-    });
-    u32::from_le_bytes(levels.map(|level| level as u8))
+    }))
 }
 
 /// Two channels of 16 pixels, in the halves of their words: R and B, or G and A.

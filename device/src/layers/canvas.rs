@@ -5,12 +5,13 @@
 //! from: the frame buffer, [`super::tile`], [`super::pixels`]. Outputs to: the frame buffer, counts. Clocks: none.
 
 use super::Counts;
+use super::blend::over;
 use crate::hidden::z_buffer::kernel::{LANE, LANES};
 use crate::hidden::z_buffer::tile::TILE;
 use crate::shading::resolve::{PixelRow, Row16, Row32};
 use fearless_simd::prelude::*;
 use fearless_simd::{mask32x16, u32x16};
-use zga_abi::format::PixelFormat;
+use zga_abi::format::{BlendMode, PixelFormat};
 
 /// A bit for each lane.
 const BIT: [u32; LANES] = {
@@ -149,12 +150,20 @@ impl Canvas {
         mine.select(before.max(number), before).store_slice(latest);
     }
 
-    /// Adds up what the pixels of rows say: how many there are, and the comparisons of their sorts beyond one for each
+    /// Blends a colour over the pixel at a row and column.
+    #[inline(always)]
+    pub fn blend(&mut self, [row, column]: [usize; 2], mode: BlendMode, colour: u32) {
+        let pixel = &mut self.colours[row * TILE + column];
+        *pixel = over(mode, *pixel, colour);
+        self.blended[row] |= 1 << column;
+    }
+
+    /// Adds up what the pixels of rows and of the columns in `mask` say: how many there are, and the comparisons of their sorts beyond one for each
     /// layer after the first. `blended` layers are counted by who blends them.
-    pub fn count(&self, rows: [usize; 2], ordered: bool, counts: &mut Counts) {
+    pub fn count(&self, rows: [usize; 2], mask: u64, ordered: bool, counts: &mut Counts) {
         for row in rows[0]..rows[1] {
-            counts.pixels += u64::from(self.blended[row].count_ones());
-            let mut tangled = if ordered { 0 } else { self.tangled[row] };
+            counts.pixels += u64::from((self.blended[row] & mask).count_ones());
+            let mut tangled = if ordered { 0 } else { self.tangled[row] & mask };
             counts.sorted_pixels += u64::from(tangled.count_ones());
             while tangled != 0 {
                 let layers = u64::from(self.depth[row * TILE + tangled.trailing_zeros() as usize]);

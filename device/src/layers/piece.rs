@@ -40,8 +40,28 @@ pub struct Piece {
     pub mode: BlendMode,
     /// Place of its draw in the scene.
     draw: u32,
+    /// Its place among the parts of its tile.
+    number: u32,
     /// Pixels that it may change.
     pub area: Pixels,
+}
+
+/// Colours of the parts of a tile, each made when it is first seen.
+#[derive(Debug, Default)]
+pub struct Palette(Vec<Option<Colours>>);
+
+impl Palette {
+    /// Colours of so many parts, none of them made.
+    pub fn reset(&mut self, parts: usize) {
+        self.0.clear();
+        self.0.resize(parts, None);
+    }
+
+    /// Those of a piece of the tile.
+    #[inline(always)]
+    pub fn of(&mut self, piece: &Piece, draws: &[ItemDraw]) -> &Colours {
+        self.0[piece.number as usize].get_or_insert_with(|| piece.colours(draws))
+    }
 }
 
 /// What a tile has to do with an item.
@@ -65,13 +85,6 @@ impl Colours {
     #[inline(always)]
     pub fn flat(&self) -> Option<u32> {
         if let ColourPlane::Interpolated(Interpolated::Flat(colour)) = self.0 { Some(colour) } else { None }
-    }
-
-    /// Colour of pixel (`x`, `y`).
-    #[must_use]
-    #[inline(always)]
-    pub fn at(&self, x: i32, y: i32) -> u32 {
-        if self.0.is_hole(x, y) { 0 } else { self.0.colour(x, y) }
     }
 
     /// Colours of 16 pixels from (`x`, `y`) on.
@@ -123,6 +136,34 @@ impl Part {
         }
     }
 
+    /// Gives it its place among the parts of its tile.
+    #[inline(always)]
+    pub fn set_number(&mut self, place: usize) {
+        if let Part::Layer(piece) | Part::Cover(piece) = self {
+            piece.number = place as u32;
+        }
+    }
+
+    /// The same for the pixels of `area` alone; `None` if it has nothing to do with them.
+    #[must_use]
+    #[inline(always)]
+    pub fn within(&self, area: &Pixels) -> Option<Part> {
+        let area = common(area, &self.area());
+        if is_empty(&area) {
+            return None;
+        }
+        let cut = |piece: &Piece| {
+            let piece = Piece { area, ..*piece };
+            let [from, to] = piece.reach(area[1]);
+            (from < to).then_some(piece)
+        };
+        match self {
+            Part::Layer(piece) => cut(piece).map(Part::Layer),
+            Part::Cover(piece) => cut(piece).map(Part::Cover),
+            Part::Clear(_) => Some(Part::Clear(area)),
+        }
+    }
+
     /// Sets an item up for the pixels of `area`; `None` if it has nothing to do with them.
     #[must_use]
     #[inline(always)]
@@ -155,7 +196,7 @@ impl Part {
             return None;
         }
         let (plane, ItemDraw { test, mode, .. }) = (shape.plane(format), draw);
-        let piece = Piece { shape, plane, steep, test: *test, mode: *mode, draw: item.draw, area };
+        let piece = Piece { shape, plane, steep, test: *test, mode: *mode, draw: item.draw, number: 0, area };
         Some(if draw.is_opaque(v) { Part::Cover(piece) } else { Part::Layer(piece) })
     }
 }

@@ -4,16 +4,17 @@
 //! those of any other, or are one and the same depth, the order of the layers at each pixel is their order in the tile:
 //! they are painted from the farthest to the nearest, row by row, 16 pixels at a time, as an opaque triangle would be.
 //! Bounds of the opaque depths in the tile say for most layers that all or none of it is seen. A tile in which depths
-//! overlap goes to [`super::pixels`].
+//! overlap is looked at in blocks of 16x16 pixels ([`super::unit`]): in most of them there is an order, and they are painted
+//! in the same way. What is left goes to [`super::pixels`].
 //!
 //! Duties: order of layers, depth tests, blending. Inputs from: [`super::piece`], opaque depths. Outputs to:
 //! [`super::canvas`], counts. Clocks: those of [`super`]. Everything here must equal [`super::specification`] bit for bit
 //! at every SIMD level.
 
 use super::Counts;
-use super::blend::{self, Factors};
+use super::blend::Factors;
 use super::canvas::Canvas;
-use super::piece::{Colours, Part, Piece, Pixels};
+use super::piece::{Colours, Palette, Part, Piece, Pixels};
 use crate::geometry::plane::below;
 use crate::hidden::z_buffer::DepthTest;
 use crate::hidden::z_buffer::kernel::{LANE, LANES, Steps};
@@ -146,6 +147,7 @@ pub fn paint<S: Simd>(
     parts: &[Part],
     order: &Order,
     place: &Place<'_>,
+    palette: &mut Palette,
     canvas: &mut Canvas,
     counts: &mut Counts,
 ) {
@@ -166,7 +168,8 @@ pub fn paint<S: Simd>(
         if verdict == Verdict::None {
             counts.fragments += (piece.area[1][0]..piece.area[1][1]).map(|y| width(piece.span(y))).sum::<u64>();
         } else {
-            let brush = Brush::new(simd, piece, verdict == Verdict::Open, number, place);
+            let colours = palette.of(piece, place.draws);
+            let brush = Brush::new(simd, piece, colours, verdict == Verdict::Open, number, place);
             brush.paint(simd, place, canvas, counts);
         }
         piece.count_shaded(place.draws, counts.blended - before, counts);
@@ -182,7 +185,7 @@ fn width([from, to]: [i32; 2]) -> u64 {
 /// A layer that is painted.
 struct Brush<'a, S: Simd> {
     piece: &'a Piece,
-    colours: Colours,
+    colours: &'a Colours,
     /// Of a layer of one colour.
     flat: Option<Factors<S>>,
     /// Its test has to be made.
@@ -197,8 +200,15 @@ struct Brush<'a, S: Simd> {
 
 impl<'a, S: Simd> Brush<'a, S> {
     #[inline(always)]
-    fn new(simd: S, piece: &'a Piece, tested: bool, number: Option<u32>, place: &Place<'_>) -> Self {
-        let (colours, format) = (piece.colours(place.draws), place.format);
+    fn new(
+        simd: S,
+        piece: &'a Piece,
+        colours: &'a Colours,
+        tested: bool,
+        number: Option<u32>,
+        place: &Place<'_>,
+    ) -> Self {
+        let format = place.format;
         #[expect(clippy::manual_map, reason = "a closure is not sure to become part of code for the level it runs at")]
         let flat = match colours.flat() {
             Some(colour) => Some(Factors::new(simd, piece.mode, u32x16::splat(simd, colour))),
@@ -290,14 +300,6 @@ impl<'a, S: Simd> Brush<'a, S> {
         let [less, equal, greater] = self.outcomes;
         (less & depths.simd_lt(stored)) | (equal & depths.simd_eq(stored)) | (greater & depths.simd_gt(stored))
     }
-}
-
-/// A layer's colour over pixel (`x`, `y`) of a canvas.
-pub fn blend_at(piece: &Piece, colours: &Colours, [x, y]: [i32; 2], place: &Place<'_>, canvas: &mut Canvas) {
-    let [row, column] = place.of(x, y);
-    let pixel = &mut canvas.colours[row * TILE + column];
-    *pixel = blend::over(piece.mode, *pixel, colours.at(x, y));
-    canvas.blended[row] |= 1 << column;
 }
 
 #[cfg(test)]

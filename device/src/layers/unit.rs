@@ -8,10 +8,11 @@
 //! [`WEIGHT`] pixels of bounding boxes; a band with more than that is done row by row, by one thread.
 
 use super::canvas::{Canvas, Frame};
-use super::piece::{Part, Pixels, common, is_empty};
+use super::piece::{Palette, Part, Pixels, common, is_empty};
 use super::pixels::Pixels as Mixed;
 use super::tile::{Order, Place, paint};
 use super::{Counts, Setting, specification};
+use crate::hidden::z_buffer::kernel::LANES;
 use crate::hidden::z_buffer::tile::TILE;
 use crate::pipeline::bands::{Counts as _, Plane, Sight, Surfaces, each_band};
 use crate::probe::account::Clocks;
@@ -40,8 +41,11 @@ pub struct Unit {
 struct Work {
     reaches: Vec<Reach>,
     parts: Vec<Part>,
+    /// Those of a block.
+    few: Vec<Part>,
     order: Order,
     mixed: Mixed,
+    palette: Palette,
     canvas: Canvas,
 }
 
@@ -267,7 +271,10 @@ impl Input<'_> {
                     Some(Part::Clear(pixels)) if pixels == area => work.parts.clear(),
                     // One that takes nothing back is none.
                     Some(Part::Clear(_) | Part::Cover(_)) if work.parts.is_empty() => {}
-                    Some(part) => work.parts.push(part),
+                    Some(mut part) => {
+                        part.set_number(work.parts.len());
+                        work.parts.push(part);
+                    }
                     None => {}
                 }
             }
@@ -290,22 +297,75 @@ impl Work {
     /// Composes the parts over a tile.
     #[inline(always)]
     fn tile<S: Simd>(&mut self, simd: S, place: &Place<'_>, frame: &mut Frame<'_>) -> Counts {
-        let Work { parts, order, mixed, canvas, .. } = self;
         let mut counts = Counts::default();
-        let areas = parts.iter().map(|part| part.area()[1]);
+        let areas = self.parts.iter().map(|part| part.area()[1]);
         let [top, bottom] = areas.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or(place.area[1]);
         let rows = [top, bottom].map(|y| (y - place.corner[1]) as usize);
-        let found = order.find(parts, place.format, place.draws);
-        let ordered = !found || order.is_of_submission();
-        canvas.load(simd, frame, rows, ordered);
-        if found {
-            paint(simd, parts, order, place, canvas, &mut counts);
-            canvas.count(rows, ordered, &mut counts);
-            counts.comparisons += counts.blended - counts.pixels;
+        let place = &Place { area: [place.area[0], [top, bottom]], ..*place };
+        self.palette.reset(self.parts.len());
+        let Work { parts, few, order, mixed, palette, canvas, .. } = self;
+        if order.find(parts, place.format, place.draws) {
+            canvas.load(simd, frame, rows, order.is_of_submission());
+            paint_counted(simd, parts, order, place, palette, canvas, &mut counts);
         } else {
-            mixed.compose(parts, place, canvas, &mut counts);
+            canvas.load(simd, frame, rows, false);
+            for area in blocks(&place.area) {
+                few.clear();
+                for part in parts.iter() {
+                    match part.within(&area) {
+                        Some(Part::Clear(pixels)) if pixels == area => few.clear(),
+                        // One that takes nothing back is none.
+                        Some(Part::Clear(_) | Part::Cover(_)) if few.is_empty() => {}
+                        Some(part) => few.push(part),
+                        None => {}
+                    }
+                }
+                if few.is_empty() {
+                    continue;
+                }
+                let block = Place { area, ..*place };
+                if order.find(few, place.format, place.draws) {
+                    paint_counted(simd, few, order, &block, palette, canvas, &mut counts);
+                } else {
+                    mixed.compose(simd, few, &block, palette, canvas, &mut counts);
+                }
+            }
         }
         canvas.store(simd, frame, rows);
         counts
     }
+}
+
+/// Side of a block of a tile that is looked at by itself: a chunk of lanes.
+const BLOCK: i32 = LANES as i32;
+
+/// The blocks of a tile that an area has pixels in, cut to it.
+fn blocks(area: &Pixels) -> impl Iterator<Item = Pixels> + use<> {
+    let [[left, right], [top, bottom]] = *area;
+    let start = |c: i32| c / BLOCK * BLOCK;
+    let rows = (start(top)..bottom).step_by(BLOCK as usize);
+    rows.flat_map(move |y| {
+        let columns = (start(left)..right).step_by(BLOCK as usize);
+        columns.map(move |x| common(&[[left, right], [top, bottom]], &[[x, x + BLOCK], [y, y + BLOCK]]))
+    })
+}
+
+/// Paints the layers of an area in the order that was found, and counts what that takes.
+#[inline(always)]
+fn paint_counted<S: Simd>(
+    simd: S,
+    parts: &[Part],
+    order: &Order,
+    place: &Place<'_>,
+    palette: &mut Palette,
+    canvas: &mut Canvas,
+    total: &mut Counts,
+) {
+    let mut counts = Counts::default();
+    paint(simd, parts, order, place, palette, canvas, &mut counts);
+    let [columns, rows] = [0, 1].map(|axis| place.area[axis].map(|c| (c - place.corner[axis]) as u32));
+    let mask = (u64::MAX >> (64 - (columns[1] - columns[0]))) << columns[0];
+    canvas.count(rows.map(|row| row as usize), mask, order.is_of_submission(), &mut counts);
+    counts.comparisons += counts.blended - counts.pixels;
+    *total = total.plus(counts);
 }

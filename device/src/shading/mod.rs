@@ -10,6 +10,7 @@
 //! | [`resolve`] | runs of visible pixels become frame buffer pixels |
 //! | [`light`] | colours of vertices and pixels under lights |
 //! | [`fog`] | fog and depth cueing |
+//! | [`levels`] | products and mixtures of 8-bit levels |
 //! | [`math`] | powers and directions for both |
 //!
 //! Clocks: 1 for each interpolated pixel (four interpolators side by side); flat colours cost none.
@@ -17,6 +18,7 @@
 //! of a Gouraud draw. That the host shades only what stays visible shows in host time alone.
 
 pub mod fog;
+pub mod levels;
 pub mod light;
 pub mod math;
 pub mod parameters;

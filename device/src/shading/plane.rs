@@ -42,6 +42,10 @@ pub enum Interpolated {
 
 /// How a primitive's colour follows the pixel.
 #[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "most planes are of the large kind, and none of them is to cost an allocation"
+)]
 pub enum ColourPlane {
     /// By interpolation alone.
     Interpolated(Interpolated),

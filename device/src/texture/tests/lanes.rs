@@ -1,7 +1,8 @@
 //! Sixteen pixels at once against one at a time, at every SIMD level of this host.
 
 use super::{Texture, all_levels, noise, plain};
-use crate::texture::function::{combine, combine_lanes, mix8, mul8};
+use crate::shading::levels::{mix8, mul8};
+use crate::texture::function::{combine, combine_lanes};
 use fearless_simd::{Level, dispatch};
 use proptest::prelude::*;
 use zga_abi::format::{TextureFilter, TextureFunction};
