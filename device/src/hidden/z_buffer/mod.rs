@@ -102,15 +102,15 @@ pub fn all_surfaces<'m>(memory: &'m mut [u32], target: &Target) -> (&'m mut [u32
     };
     let colour = of(target.colour.base, target.colour.pitch);
     let depth = target.depth.map_or(0..0, |depth| of(depth.base, depth.pitch));
-    let [colour, depth, stencil] = apart(memory, [colour, depth, stencil::words(target)]);
+    let [colour, depth, stencil] = apart(memory, &[colour, depth, stencil::words(target)]);
     (colour, bytemuck::cast_slice_mut(depth), bytemuck::cast_slice_mut(stencil))
 }
 
 /// Ranges of memory as slices. The firmware has checked that they lie apart.
-fn apart<const N: usize>(memory: &mut [u32], ranges: [Range<usize>; N]) -> [&mut [u32]; N] {
+fn apart<'m, const N: usize>(memory: &'m mut [u32], ranges: &[Range<usize>; N]) -> [&'m mut [u32]; N] {
     let mut order: [usize; N] = std::array::from_fn(|k| k);
     order.sort_unstable_by_key(|&k| (ranges[k].start, ranges[k].end));
-    let mut parts: [&mut [u32]; N] = std::array::from_fn(|_| <&mut [u32]>::default());
+    let mut parts: [&'m mut [u32]; N] = std::array::from_fn(|_| <&mut [u32]>::default());
     let (mut rest, mut at) = (memory, 0);
     for k in order {
         let (_, after) = rest.split_at_mut(ranges[k].start - at);
