@@ -51,7 +51,7 @@ fn section(section: &Section) -> Value {
         "findings": section.findings,
         "notes": section.notes,
         "sweeps": section.sweeps.iter().map(sweep).collect::<Vec<_>>(),
-        "tables": section.tables.iter().map(table).collect::<Vec<_>>(),
+        "tables": section.summary.iter().chain(&section.tables).map(table).collect::<Vec<_>>(),
         "plots": section.plots.iter().map(plot).collect::<Vec<_>>(),
     })
 }

@@ -85,8 +85,11 @@ fn headlines(sections: &[Section]) -> Vec<String> {
     let name = |section: &Section| section.title.split(':').next().unwrap_or_default().to_owned();
     let mut all: Vec<String> = sections
         .iter()
-        .filter(|section| ["combined", "grid"].contains(&section.name))
-        .filter_map(|section| section.findings.first().cloned())
+        .filter_map(|section| match section.name {
+            "combined" | "grid" => section.findings.first().cloned(),
+            "presets" | "subpixel-depth" => section.findings.last().cloned(),
+            _ => None,
+        })
         .collect();
     let mut free = Vec::new();
     let mut lost = Vec::new();

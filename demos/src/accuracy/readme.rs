@@ -17,7 +17,7 @@ pub fn fragment(report: &Report) -> (String, Option<String>) {
         .or_else(|| report.sections.iter().flat_map(|section| &section.sweeps).flat_map(of_sweep_plots).next());
     let mut text = String::new();
     report.headlines.iter().for_each(|line| text.push_str(&format!("* {line}\n")));
-    let shown = find("presets").and_then(|section: &Section| section.tables.first());
+    let shown = find("presets").and_then(|section: &Section| section.summary.as_ref());
     if let Some(table) = shown {
         let row = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
         let head = |column: &super::report::Column| match column.unit {

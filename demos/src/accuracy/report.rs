@@ -46,6 +46,8 @@ pub struct Section {
     pub about: Vec<String>,
     /// What was found, in plain words, computed from the figures; a sentence or two each.
     pub findings: Vec<String>,
+    /// What a reader should see first, before plots and pictures.
+    pub summary: Option<Table>,
     /// Settings with error and price.
     pub sweeps: Vec<Sweep>,
     /// Other figures.

@@ -38,7 +38,8 @@ pub(super) fn threads(count: usize) -> String {
 fn of_section(section: &Section) -> String {
     let mut text = format!("\n{}  [{}]\n", section.title, section.name);
     section.findings.iter().for_each(|line| text.push_str(&bullet(line)));
-    for table in section.sweeps.iter().map(of_sweep_table).chain(section.tables.iter().cloned()) {
+    let sweeps = section.sweeps.iter().map(of_sweep_table);
+    for table in section.summary.iter().cloned().chain(sweeps).chain(section.tables.iter().cloned()) {
         if !table.title.is_empty() {
             text.push_str(&format!("\n  {}\n", table.title));
         }
@@ -102,7 +103,7 @@ pub fn of_sweep_table(sweep: &Sweep) -> Table {
     let verdicts = of_sweep(sweep);
     let row = |(at, point): (usize, &super::report::Point)| {
         let (error, price) = (&point.error, &point.price);
-        let times = |value: Option<f64>, least: f64| Cell::from(value.map(|value| format!("{:.2}", value / least)));
+        let times = |value: Option<f64>, least: f64| Cell::from(value.map(|value| value / least));
         let verdict = match verdicts[at] {
             Some(by) => format!("never worth it: {}", sweep.points[by].setting),
             None => String::new(),

@@ -78,14 +78,19 @@ pub fn sentences(sweep: &Sweep) -> Vec<String> {
     for (at, by) in of_sweep(sweep).into_iter().enumerate() {
         let Some(by) = by else { continue };
         let (loser, winner) = (&sweep.points[at], &sweep.points[by]);
-        all.push(format!(
-            "On {scene}, {} is never worth it: {} has {} where it has {}, for {} times its clocks.",
-            loser.setting,
-            winner.setting,
-            quantity(sweep.error(winner).unwrap_or(0.0), sweep),
-            quantity(sweep.error(loser).unwrap_or(0.0), sweep),
-            figure(winner.price.clocks.unwrap_or(0.0) / loser.price.clocks.unwrap_or(1.0)),
-        ));
+        let [lost, won] = [loser, winner].map(|point| sweep.error(point).unwrap_or(0.0));
+        let clocks = winner.price.clocks.unwrap_or(0.0) / loser.price.clocks.unwrap_or(1.0);
+        let error = if won == lost {
+            "is as exact".to_owned()
+        } else {
+            format!("has {} where it has {}", quantity(won, sweep), quantity(lost, sweep))
+        };
+        let price = if clocks * SAME >= 1.0 {
+            "for the same clocks".to_owned()
+        } else {
+            format!("for {} times its clocks", figure(clocks))
+        };
+        all.push(format!("On {scene}, {} is never worth it: {} {error}, {price}.", loser.setting, winner.setting));
     }
     all
 }
@@ -108,7 +113,7 @@ pub fn figure(value: f64) -> String {
     }
     if size < 0.9995e-3 {
         let text = format!("{value:.1e}");
-        return text.replace("e-", "e-").replace(".0e", "e");
+        return text.replace(".0e", "e");
     }
     // The exponent after rounding to three digits decides how many of them stand behind the point.
     let exponent = format!("{size:.2e}").split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);

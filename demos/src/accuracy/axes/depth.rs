@@ -127,7 +127,7 @@ pub fn bits(context: &mut Context<'_>) -> Result<Section> {
         format!(
             "Beyond sampling noise from the published rates: {}. Those are of another distribution of triangles, good for the \
              order of magnitude; here corners are uniform within 8192 pixels of the pixel looked at, depths uniform in the middle \
-             80 % of the range, and the two planes within 1e-4 of the range of each other.",
+             80 % of the range, and the two planes within 1e-4 of the range of each other, so that without fraction bits the answer is a coin's (50 %).",
             far.join(", ")
         )
     });

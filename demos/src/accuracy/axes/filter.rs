@@ -42,7 +42,7 @@ pub fn section(context: &mut Context<'_>) -> Result<Section> {
     for (view, name) in [(View::Floor, "floor, minified"), (View::Wall, "wall, magnified")] {
         context.tell(name);
         let samples = context.effort.pick(12, 32);
-        let repeats = context.effort.pick(5, 21);
+        let repeats = context.effort.pick(11, 31);
         let found = of_card(view, context.size, samples, context.threads, repeats, context.seed);
         let mut points = Vec::new();
         let mut maps = Vec::new();
@@ -78,14 +78,12 @@ pub fn section(context: &mut Context<'_>) -> Result<Section> {
 fn strip(name: &str, found: &Found, maps: &[Vec<f64>]) -> Strip {
     let size = found.size;
     let part = |whole: &Picture| cropped(whole, [size[0] / 2 - 40.min(size[0] / 2), 0], [80, 50]);
-    let mut panels = vec![Panel { name: "exact".to_owned(), picture: part(&shown(&found.truth, size)) }];
-    for (outcome, map) in
-        found.outcomes.iter().zip(maps).filter(|(o, _)| o.way.levels || o.way.name().starts_with("near"))
-    {
-        let name = outcome.way.name();
-        panels.push(Panel { name: name.to_owned(), picture: part(&shown(&outcome.picture, size)) });
+    let mut panels = Vec::new();
+    for (outcome, map) in found.outcomes.iter().zip(maps).filter(|(outcome, _)| outcome.way.levels) {
         let levels: Vec<f64> = map.iter().map(|difference| difference * 255.0).collect();
-        panels.push(Panel { name: format!("FLIP of {name}"), picture: part(&heat(&levels, size)) });
+        panels.push(Panel { name: "true picture".to_owned(), picture: part(&shown(&found.truth, size)) });
+        panels.push(Panel { name: outcome.way.name().to_owned(), picture: part(&shown(&outcome.picture, size)) });
+        panels.push(Panel { name: "FLIP".to_owned(), picture: part(&heat(&levels, size)) });
     }
     let caption = "FLIP maps: white looks the same, black looks altogether different.".to_owned();
     Strip { title: format!("{name}: true picture, filters, FLIP"), panels, caption }

@@ -47,7 +47,7 @@ fn price(drawn: &Drawn, pixels: usize) -> Price {
 /// Draws a scene under each setting and compares with the true picture.
 fn pictures(context: &mut Context<'_>, name: &str, scene: &Scene, settings: &[(String, Setting)], by: By) -> Swept {
     context.tell(name);
-    let repeats = context.effort.pick(5, 21);
+    let repeats = context.effort.pick(11, 31);
     let plain: Vec<Setting> = settings.iter().map(|(_, setting)| *setting).collect();
     let truth = truth(scene, [EXACT; 2]);
     let drawn = card::drawn(scene, &plain, context.threads, repeats);
@@ -129,15 +129,16 @@ fn distances(truth: &Truth, colour: &[u32]) -> Vec<f64> {
     colour.iter().enumerate().map(|(at, shown)| truth.distance(at, *shown)).collect()
 }
 
-/// A magnified crop of where `bad` is worst: exact, then each named picture with its difference.
+/// A magnified crop of where the first picture is worst; a row for each: true picture, that of the card, difference.
 fn magnified(title: &str, truth: &Truth, shown: &[(&str, &[u32])], caption: &str) -> Strip {
     let size = truth.size;
     let at = shown.first().map_or([0, 0], |(_, bad)| worst(&distances(truth, bad), size));
     let panel = |name: String, whole: &Picture| Panel { name, picture: cropped(whole, at, CROP) };
-    let mut panels = vec![panel("exact".to_owned(), &picture(size, &truth.rounded()))];
+    let mut panels = Vec::new();
     for (name, colour) in shown {
+        panels.push(panel("true picture".to_owned(), &picture(size, &truth.rounded())));
         panels.push(panel((*name).to_owned(), &picture(size, colour)));
-        panels.push(panel(format!("difference of {name}"), &heat(&distances(truth, colour), size)));
+        panels.push(panel("difference".to_owned(), &heat(&distances(truth, colour), size)));
     }
     Strip { title: title.to_owned(), panels, caption: caption.to_owned() }
 }

@@ -55,7 +55,7 @@ fn scenes(context: &Context<'_>) -> Vec<(String, Scene)> {
     let size = context.effort.pick([160, 120], [320, 240]);
     let random = |kind: Kind| (kind.name().to_owned(), kind.scene(size, &mut Random::new(context.seed)));
     let mesh = (format!("two crossing copies of {}", mesh_name(context)), model::crossing(&context.mesh, context.size));
-    vec![random(Kind::Soup), random(Kind::Crossing), mesh]
+    vec![random(Kind::Soup), random(Kind::Crossing), random(Kind::Terrain), mesh]
 }
 
 pub fn section(context: &mut Context<'_>) -> Result<Section> {
@@ -115,7 +115,7 @@ pub fn section(context: &mut Context<'_>) -> Result<Section> {
         ]);
     }
     section.findings = sweeps.iter().flat_map(sentences).collect();
-    section.tables.push(table);
+    section.summary = Some(table);
     section.sweeps = sweeps;
     Ok(section)
 }

@@ -30,13 +30,12 @@ pub fn section(context: &mut Context<'_>) -> Result<Section> {
     ];
     for (name, corners) in models {
         context.tell(&name);
-        let found = of_card(&corners, size, context.threads, context.effort.pick(5, 21));
+        let found = of_card(&corners, size, context.threads, context.effort.pick(11, 31));
         let mut points = Vec::new();
         let mut panels = Vec::new();
         let part = |levels: &[[f64; 3]]| {
             cropped(&shown(levels, size), [size[0] / 4, size[1] / 6], [size[0] / 2, size[1] * 2 / 3])
         };
-        panels.push(Panel { name: "exact".to_owned(), picture: part(&found.truth) });
         for outcome in &found.outcomes {
             let map = flip::flip(&found.truth, &outcome.picture, size[0] as usize, flip::PIXELS_PER_DEGREE);
             let error = ErrorFigures {
@@ -52,11 +51,12 @@ pub fn section(context: &mut Context<'_>) -> Result<Section> {
                 outcome.way.name().into(),
                 psnr(&found.truth, &outcome.picture).into(),
             ]);
+            panels.push(Panel { name: "true picture".to_owned(), picture: part(&found.truth) });
             panels.push(Panel { name: outcome.way.name().to_owned(), picture: part(&outcome.picture) });
             let levels: Vec<f64> = map.iter().map(|difference| difference * 255.0).collect();
             let whole = heat(&levels, size);
             let picture = cropped(&whole, [size[0] / 4, size[1] / 6], [size[0] / 2, size[1] * 2 / 3]);
-            panels.push(Panel { name: format!("FLIP of {}", outcome.way.name()), picture });
+            panels.push(Panel { name: "FLIP".to_owned(), picture });
         }
         let caption = "FLIP maps: white looks the same, black looks altogether different.".to_owned();
         section.strips.push(Strip { title: name.clone(), panels, caption });

@@ -33,10 +33,13 @@ pub fn html(report: &Report) -> String {
     text.push_str(include_str!("page.css"));
     text.push_str("</style>\n</head>\n<body>\n<header>\n<h1>What accuracy costs</h1>\n");
     text.push_str(
-        "<p class=\"lead\">ZGA is a graphics card in software. Every setting that trades accuracy for time is drawn here on \
+        "<p class=\"lead\">ZGA is a graphics card in software. Each of its settings that trades accuracy for time is drawn here on \
          the card, compared with exact arithmetic, and priced: in clocks of the card, which are counted, and in time of the \
-         computer that simulates it, which is measured.</p>\n",
+         computer that simulates it, which is measured.</p>\n\
+         <p>In every plot down is more exact and left is cheaper. A setting is <em>never worth it</em> when another has no more \
+         error and no more clocks. Errors are never taken against another setting of the card.</p>\n",
     );
+    text.push_str("<h2>What was found</h2>\n");
     text.push_str(&list(&report.headlines, "findings headlines"));
     text.push_str("<nav>\n");
     for section in &report.sections {
@@ -75,10 +78,11 @@ fn of_section(section: &Section) -> String {
     let mut text = format!("<section id=\"{}\">\n<h2>{}</h2>\n", section.name, escaped(&section.title));
     section.about.iter().for_each(|line| text.push_str(&format!("<p>{}</p>\n", escaped(line))));
     text.push_str(&list(&section.findings, "findings"));
+    section.summary.iter().for_each(|table| text.push_str(&of_table(table, &[])));
     let plots: Vec<Plot> =
         section.sweeps.iter().flat_map(of_sweep_plots).chain(section.plots.iter().cloned()).collect();
     if !plots.is_empty() {
-        text.push_str("<div class=\"plots\">\n");
+        text.push_str(if plots.len() == 1 { "<div class=\"plots single\">\n" } else { "<div class=\"plots\">\n" });
         for plot in &plots {
             let title = escaped(&plot.title);
             text.push_str(&format!("<figure>\n<figcaption>{title}</figcaption>\n{}</figure>\n", svg(plot)));
@@ -86,11 +90,17 @@ fn of_section(section: &Section) -> String {
         text.push_str("</div>\n");
     }
     section.strips.iter().for_each(|strip| text.push_str(&of_strip(strip)));
-    for sweep in &section.sweeps {
-        let lost: Vec<bool> = of_sweep(sweep).iter().map(Option::is_some).collect();
-        text.push_str(&of_table(&of_sweep_table(sweep), &lost));
+    if !section.sweeps.is_empty() || !section.tables.is_empty() {
+        // Where there is nothing else to see the figures are open.
+        let open = if plots.is_empty() { " open" } else { "" };
+        text.push_str(&format!("<details{open}>\n<summary>All figures of this section</summary>\n"));
+        for sweep in &section.sweeps {
+            let lost: Vec<bool> = of_sweep(sweep).iter().map(Option::is_some).collect();
+            text.push_str(&of_table(&of_sweep_table(sweep), &lost));
+        }
+        section.tables.iter().for_each(|table| text.push_str(&of_table(table, &[])));
+        text.push_str("</details>\n");
     }
-    section.tables.iter().for_each(|table| text.push_str(&of_table(table, &[])));
     section.notes.iter().for_each(|line| text.push_str(&format!("<p class=\"note\">{}</p>\n", escaped(line))));
     text.push_str("</section>\n");
     text
@@ -155,7 +165,8 @@ fn of_table(table: &Table, lost: &[bool]) -> String {
 }
 
 fn of_strip(strip: &Strip) -> String {
-    let mut text = format!("<h3>{}</h3>\n<div class=\"strip\">\n", escaped(&strip.title));
+    let mut text =
+        format!("<h3>{}</h3>\n<div class=\"strip across{}\">\n", escaped(&strip.title), strip.panels.len().clamp(1, 3));
     for Panel { name, picture } in &strip.panels {
         let class = if picture.width < LARGE { " class=\"large\"" } else { "" };
         let name = escaped(name);
@@ -179,3 +190,7 @@ fn png(picture: &Picture) -> Vec<u8> {
         Err(_) => Vec::new(),
     }
 }
+
+#[cfg(test)]
+#[path = "tests.rs"]
+mod tests;

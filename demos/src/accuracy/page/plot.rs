@@ -43,7 +43,7 @@ impl Ruler {
             Scale::Linear => {
                 let [low, high] = bounds(&mut finite.clone());
                 let [low, high] = if low > high { [0.0, 1.0] } else { [low, high] };
-                let near_zero = low >= 0.0 && low < 0.6 * high;
+                let near_zero = low >= 0.0 && low < 0.3 * high;
                 let [least, greatest] = around(low, high, high.abs().max(1e-9) * 0.02);
                 Self {
                     scale: axis.scale,
