@@ -111,6 +111,7 @@ fn headlines(sections: &[Section]) -> Vec<String> {
             lost.push(format!("{} ({})", always.join(", "), name(section).to_lowercase()));
         }
     }
+    let noise = noise(sections);
     if !free.is_empty() {
         all.push(format!(
             "Free in clocks, so there is no reason for less than the best: {}.",
@@ -123,5 +124,57 @@ fn headlines(sections: &[Section]) -> Vec<String> {
             lost.join("; ")
         ));
     }
+    if noise > NOISY {
+        all.push(format!(
+            "Host times were noisy in this run (their quartiles typically lie {} % from the median): take them as orders of \
+             magnitude. Errors and clocks have no such noise.",
+            figure(100.0 * noise)
+        ));
+    }
     all
+}
+
+/// Relative spread of host times beyond which that is told.
+const NOISY: f64 = 0.1;
+
+/// The typical spread of a host time, relative to the time: the middle one over all settings; 0 where none was measured.
+fn noise(sections: &[Section]) -> f64 {
+    let points = sections.iter().flat_map(|section| &section.sweeps).flat_map(|sweep| &sweep.points);
+    let mut all: Vec<f64> = points.filter_map(|point| Some(point.price.spread? / point.price.nanoseconds?)).collect();
+    all.sort_by(f64::total_cmp);
+    all.get(all.len() / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn section(settings: &[(&str, f64, f64)]) -> Section {
+        let point = |&(setting, mean, clocks): &(&str, f64, f64)| Point {
+            setting: setting.to_owned(),
+            error: ErrorFigures { mean: Some(mean), ..ErrorFigures::default() },
+            price: Price { clocks: Some(clocks), nanoseconds: Some(10.0), spread: Some(4.0) },
+        };
+        let points = settings.iter().map(point).collect();
+        let sweep = Sweep { scene: String::new(), measure: String::new(), unit: "", by: By::Mean, points };
+        Section { name: "axis", title: "The axis: explained".to_owned(), sweeps: vec![sweep], ..Section::default() }
+    }
+
+    #[test]
+    fn headlines_name_free_axes_lost_settings_and_noise() {
+        let free = headlines(&[section(&[("a", 2.0, 5.0), ("b", 1.0, 5.0)])]);
+        assert!(free[0].starts_with("Free in clocks") && free[0].ends_with("the axis."), "{free:?}");
+        let lost = headlines(&[section(&[("a", 2.0, 5.0), ("b", 1.0, 4.0), ("c", 0.5, 9.0)])]);
+        assert!(lost[0].contains("Never worth it") && lost[0].ends_with("a (the axis)."), "{lost:?}");
+        assert!(lost[1].contains("40 % from the median"), "{lost:?}");
+    }
+
+    #[test]
+    fn parts_have_names_that_are_anchors_and_no_two_the_same() {
+        let mut names: Vec<&str> = PARTS.iter().map(|(name, ..)| *name).collect();
+        assert!(names.iter().all(|name| name.chars().all(|c| c.is_ascii_lowercase() || c == '-')));
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), PARTS.len());
+    }
 }

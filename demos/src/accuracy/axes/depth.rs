@@ -8,7 +8,7 @@ use super::super::context::Context;
 use super::super::model;
 use super::super::report::{By, ErrorFigures, Point, Section, Sweep};
 use super::super::verdict::sentences;
-use super::{magnified, mesh_name, pictures, price};
+use super::{crossing_name, magnified, pictures, price};
 use crate::error::Result;
 
 const FRACTIONS: [u32; 4] = [0, 8, 16, 24];
@@ -41,7 +41,7 @@ pub fn fraction(context: &mut Context<'_>) -> Result<Section> {
         .map(|depth| (format!("F{}", depth.fraction), Setting { depth: *depth, ..Setting::best() }))
         .collect();
     let scene = model::crossing(&context.mesh, context.size);
-    let name = format!("two crossing copies of {}", mesh_name(context));
+    let name = crossing_name(context);
     let mesh = pictures(context, &name, &scene, &settings, By::Mean);
     let shown = [("F0", mesh.drawn[0].colour.as_slice()), ("F24", mesh.drawn[3].colour.as_slice())];
     let strips =
@@ -76,7 +76,7 @@ pub fn bits(context: &mut Context<'_>) -> Result<Section> {
     let settings: Vec<(String, Setting)> =
         formats.iter().map(|depth| (name(depth), Setting { depth: *depth, ..Setting::best() })).collect();
     let scene = model::crossing(&context.mesh, context.size);
-    let scene_name = format!("two crossing copies of {}", mesh_name(context));
+    let scene_name = crossing_name(context);
     let mesh = pictures(context, &scene_name, &scene, &settings, By::Mean);
     let samples = context.effort.pick(1500, 25_000);
     let published = |format: &DepthFormat| -> Option<f64> {

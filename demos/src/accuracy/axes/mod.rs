@@ -87,8 +87,12 @@ fn scenes(context: &Context<'_>) -> Vec<(String, Scene)> {
 
 /// What the mesh is called in the report.
 fn mesh_name(context: &Context<'_>) -> String {
-    let triangles = context.mesh.indices.len() / 3;
-    format!("{} of {triangles} triangles", context.mesh.name)
+    format!("{} ({} triangles)", context.mesh.name, context.mesh.indices.len() / 3)
+}
+
+/// What the mesh is called where it stands twice, see [`model::crossing`].
+fn crossing_name(context: &Context<'_>) -> String {
+    format!("{} twice, crossing", context.mesh.name)
 }
 
 /// The part of a picture from `at`.

@@ -9,7 +9,7 @@ use super::super::context::Context;
 use super::super::model;
 use super::super::report::{By, Cell, ErrorFigures, Point, Section, Sweep, Table};
 use super::super::verdict::{figure, sentences};
-use super::{magnified, mesh_name, pictures, price};
+use super::{crossing_name, magnified, pictures, price};
 use crate::error::Result;
 
 const NAMES: [&str; 3] = ["centre", "search", "exhaustive"];
@@ -87,7 +87,7 @@ pub fn section(context: &mut Context<'_>) -> Result<Section> {
         .map(|(name, order)| (name.to_owned(), Setting { order, ..Setting::best() }))
         .collect();
     let scene = model::crossing(&context.mesh, context.size).snapped();
-    let name = format!("two crossing copies of {}", mesh_name(context));
+    let name = crossing_name(context);
     let mesh = pictures(context, &name, &scene, &settings, By::Mean);
     section.sweeps.push(mesh.sweep);
     section.findings = section.sweeps.iter().flat_map(sentences).collect();
