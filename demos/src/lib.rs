@@ -5,6 +5,7 @@
 //! | [`scene`], [`mesh`], [`teapot`], [`demos`] | what is drawn, independent of any card |
 //! | [`texture`] | pictures for textures: reading and palettes |
 //! | [`play`] | a scene through driver and card, and what it cost |
+//! | [`accuracy`] | what accuracy costs: errors against exact arithmetic, and prices |
 //! | [`mod@bench`] | the benchmark scenes |
 //! | [`effects`] | what each unit charges for a scene, and what an effect more or less would cost |
 //! | [`paths`] | a scene on every hidden-surface path, compared |
@@ -23,6 +24,7 @@
 //! assert!(batches.iter().any(|batch| batch.slope.is_some()), "markings are drawn as decals");
 //! ```
 
+pub mod accuracy;
 pub mod bench;
 mod canvas;
 pub mod cli;

@@ -3,6 +3,7 @@
 //! Exit codes: 0, 1 for a difference or a failed case, 2 for bad use. Results go to the standard output; warnings,
 //! errors and progress to the standard error.
 
+mod accuracy;
 mod bench;
 mod capture;
 mod effects;
@@ -59,6 +60,7 @@ enum Command {
     Pixel(pixel::Pixel),
     Trace(trace::Trace),
     Paths(paths::Paths),
+    Accuracy(accuracy::Accuracy),
     Effects(effects::Effects),
     Waves(waves::Waves),
     Bench(bench::Bench),
@@ -85,6 +87,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Pixel(command)) => command.run(),
         Some(Command::Trace(command)) => command.run(),
         Some(Command::Paths(command)) => command.run(),
+        Some(Command::Accuracy(command)) => command.run(),
         Some(Command::Effects(command)) => command.run(),
         Some(Command::Waves(command)) => command.run(),
         Some(Command::Bench(command)) => command.run(),

@@ -13,3 +13,12 @@ pub(super) fn bar(steps: u64, what: &'static str) -> ProgressBar {
         Err(_) => bar,
     }
 }
+
+/// A bar for `steps` steps whose name changes.
+pub(super) fn named_bar(steps: u64) -> ProgressBar {
+    let bar = ProgressBar::new(steps);
+    match ProgressStyle::with_template("[{bar:20}] {pos}/{len} {elapsed} {msg}") {
+        Ok(style) => bar.with_style(style.progress_chars("=> ")),
+        Err(_) => bar,
+    }
+}
