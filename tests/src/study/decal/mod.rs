@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | `scene` | tilted patches with lines, a curve and points, with and without a sheet in front; a floor; round bodies near to far |
 //! | `exact` | what must be seen, in rationals |
+//! | [`survey`] | the scenes of the report, and sums over them |
 //! | `card` | the same scenes by driver and card: decals of any slope, none, surfaces moved away, polygon offset |
 //!
 //! Source of the cure: JP 2579421 B2 / US 5,379,370. Polygon offset: OpenGL 4.6 (core profile), section 14.6.5.
@@ -15,10 +16,11 @@
 mod card;
 mod exact;
 mod scene;
+pub mod survey;
 
 pub use card::{Cure, Desk, MARKING};
 pub use exact::{Answer, Fragment};
-pub use scene::{Patch, Place, Projection, SIDE, Scene, bodies, floor};
+pub use scene::{Marking, Patch, Place, Projection, SIDE, Scene, bodies, floor};
 
 use std::collections::BTreeMap;
 
