@@ -3,13 +3,12 @@
 //! ```text
 //! cargo run --release -p zga-tests --example subpixel_error -- --samples 1000000 --seed 1
 //! ```
-//! First the coverage error of each grid over that many half-planes, beside the published figures; then how many pixels
-//! are wrong when fragments are ordered by the depth at the centre or by the mask search, and how many that is of those
-//! which the sub-pixel unit takes up when it orders sample by sample. (By the centre it does not find them all.)
+//! First the coverage error of each grid over that many half-planes, beside the published figures; then how many pixels with
+//! an edge in them are wrong when fragments are ordered by the depth at the centre, by the mask search, or sample by sample.
 
 use std::process::ExitCode;
 use zga_tests::harness::{Grid, Order};
-use zga_tests::study::order::Kind;
+use zga_tests::study::scene::Kind;
 use zga_tests::study::{coverage, order};
 
 struct Arguments {
@@ -66,27 +65,27 @@ fn main() -> ExitCode {
         }
         println!();
     }
-    println!("\norder of fragments, {scenes} scenes of each kind; wrong: pixels that are not as sample by sample");
+    println!(
+        "\norder of fragments, {scenes} scenes of each kind; wrong: edge pixels that are not what their samples exactly show"
+    );
     println!(
         "{:<5} {:<9} {:<11} {:>9} {:>9} {:>8} {:>12} {:>13} {:>14}",
-        "grid", "scene", "order", "active", "wrong", "share", "mean levels", "evaluations", "clocks"
+        "grid", "scene", "order", "edges", "wrong", "share", "mean levels", "evaluations", "clocks"
     );
     for (grid, kind) in Grid::ALL.into_iter().flat_map(|grid| Kind::ALL.map(|kind| (grid, kind))) {
-        let ways = order::of_card(grid, kind, scenes, seed);
-        let taken = ways[Order::Exhaustive as usize].active;
+        let (ways, _) = order::of_card(grid, kind, scenes, 1, 0, seed);
         for (way, found) in Order::ALL.into_iter().zip(ways) {
-            let share = |part: u64, whole: u64| part as f64 / whole.max(1) as f64;
             println!(
                 "{:<5} {:<9} {:<11} {:>9} {:>9} {:>7.3}% {:>12.2} {:>13} {:>14}",
                 name(grid),
                 format!("{kind:?}"),
                 format!("{way:?}"),
-                found.active,
+                found.edges,
                 found.wrong,
-                100.0 * share(found.wrong, taken),
-                share(found.levels, found.wrong),
+                order::percent(found.wrong, found.edges),
+                found.levels / found.edges.max(1) as f64,
                 found.evaluations,
-                found.clocks,
+                found.clocks
             );
         }
     }

@@ -16,14 +16,18 @@
 mod axes;
 mod context;
 mod json;
+mod model;
 mod page;
+mod readme;
 mod report;
 mod terminal;
 mod verdict;
 
+pub use axes::presets::{BOUNDS, Bounds};
 pub use context::{Context, Effort, Options, picture};
 pub use json::json;
 pub use page::{html, standalone, svg};
+pub use readme::{PLOT, fragment};
 pub use report::{
     Axis, By, Cell, Column, ErrorFigures, Kind, Origin, Panel, Plot, Point, Price, Report, Scale, Section, Series,
     Strip, Sweep, Table,
@@ -37,7 +41,19 @@ use crate::error::Result;
 pub type Measure = fn(&mut Context<'_>) -> Result<Section>;
 
 /// The parts of the report in order: name on the command line, what it is about, how it is made.
-pub const PARTS: &[(&str, &str, Measure)] = &[("grid", "mask grid: samples of a pixel", axes::grid::section)];
+pub const PARTS: &[(&str, &str, Measure)] = &[
+    ("presets", "presets: accuracy by name", axes::presets::section),
+    ("combined", "all settings together, and the Pareto line", axes::combined::section),
+    ("grid", "mask grid: samples of a pixel", axes::grid::section),
+    ("subpixel-depth", "who is in front inside a pixel: centre, search, exhaustive", axes::order::section),
+    ("depth-bits", "bits of a depth and of its fraction", axes::depth::bits),
+    ("depth-fraction", "fraction bits: drift over 16384 pixels", axes::depth::fraction),
+    ("coordinates", "bits of a coordinate behind the point", axes::coordinates::section),
+    ("texture", "texture filter: nearest, bilinear, trilinear", axes::filter::section),
+    ("shading", "shading: flat, Gouraud, per pixel", axes::shading::section),
+    ("za-prediction", "Za prediction: blocks not bypassed", axes::bypass::section),
+    ("fidelity", "simulation: functional or clocked", axes::fidelity::section),
+];
 
 /// Measures the parts with these names; all of them if there is none. `tell` is called with what is being measured,
 /// `done` when a part is.
@@ -58,6 +74,51 @@ pub fn measure(
         sections.push(measure(&mut context)?);
         done();
     }
-    let headlines = Vec::new();
+    let headlines = headlines(&sections);
     Ok(Report { origin: context::origin(options), headlines, sections })
+}
+
+/// What matters most: a sentence of each of the first sections, what is free, what is never worth it.
+fn headlines(sections: &[Section]) -> Vec<String> {
+    let sweeps =
+        || sections.iter().filter(|section| section.name != "presets").map(|section| (section, &section.sweeps));
+    let name = |section: &Section| section.title.split(':').next().unwrap_or_default().to_owned();
+    let mut all: Vec<String> = sections
+        .iter()
+        .filter(|section| ["combined", "grid"].contains(&section.name))
+        .filter_map(|section| section.findings.first().cloned())
+        .collect();
+    let mut free = Vec::new();
+    let mut lost = Vec::new();
+    for (section, sweeps) in sweeps() {
+        if !sweeps.is_empty() && sweeps.iter().all(verdict::is_free) {
+            free.push(name(section));
+        }
+        // A setting that some scene has a use for is none that is never worth it.
+        let losers = |sweep: &Sweep| -> Vec<String> {
+            let points = sweep.points.iter().zip(verdict::of_sweep(sweep));
+            points.filter(|(_, by)| by.is_some()).map(|(point, _)| point.setting.clone()).collect()
+        };
+        let mut each = sweeps.iter().map(losers);
+        let mut always = each.next().unwrap_or_default();
+        for other in each {
+            always.retain(|setting| other.contains(setting));
+        }
+        if !sweeps.iter().all(verdict::is_free) && !always.is_empty() {
+            lost.push(format!("{} ({})", always.join(", "), name(section).to_lowercase()));
+        }
+    }
+    if !free.is_empty() {
+        all.push(format!(
+            "Free in clocks, so there is no reason for less than the best: {}.",
+            free.join(", ").to_lowercase()
+        ));
+    }
+    if !lost.is_empty() {
+        all.push(format!(
+            "Never worth it, because another setting is as exact and as cheap or better: {}.",
+            lost.join("; ")
+        ));
+    }
+    all
 }

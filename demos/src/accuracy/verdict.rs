@@ -33,6 +33,14 @@ pub fn of_sweep(sweep: &Sweep) -> Vec<Option<usize>> {
     all
 }
 
+/// Whether all settings take the same clocks.
+#[must_use]
+pub fn is_free(sweep: &Sweep) -> bool {
+    let clocks = || sweep.points.iter().filter_map(|point| point.price.clocks);
+    let (least, most) = (clocks().fold(f64::INFINITY, f64::min), clocks().fold(0.0, f64::max));
+    clocks().count() > 1 && most <= least * SAME
+}
+
 /// What follows from a sweep, in sentences.
 #[must_use]
 pub fn sentences(sweep: &Sweep) -> Vec<String> {

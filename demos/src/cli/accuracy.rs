@@ -47,6 +47,9 @@ pub(super) struct Accuracy {
     /// Write it all as one page with plots and pictures
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
+    /// Write a Markdown fragment and a plot for a README
+    #[arg(long, value_name = "FOLDER")]
+    readme: Option<PathBuf>,
 }
 
 /// A parser for the names of the parts.
@@ -85,6 +88,13 @@ impl Accuracy {
         };
         write(&self.json, &json)?;
         write(&self.html, &accuracy::html(&report))?;
+        if let Some(folder) = &self.readme {
+            let (text, plot) = accuracy::fragment(&report);
+            write(&Some(folder.join("accuracy.md")), &text)?;
+            if let Some(plot) = plot {
+                write(&Some(folder.join(accuracy::PLOT)), &plot)?;
+            }
+        }
         Ok(Verdict::Good)
     }
 }

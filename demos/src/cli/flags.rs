@@ -8,8 +8,8 @@ use crate::limits::MAX_TARGET_PIXELS_PER_SIDE;
 use crate::play::{Asked, Environment, KERNELS, Look};
 use crate::scene::{
     ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, Fidelity, HIDDEN_SURFACES, HiddenSurface,
-    MOST_SUBPIXEL_POOL, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelGrid, SubpixelResolve, SystolicSettings, TILE_SIDES,
-    TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS, ZaPrediction,
+    MOST_SUBPIXEL_POOL, PRESETS, Preset, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelGrid, SubpixelResolve,
+    SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS, ZaPrediction,
 };
 
 /// What is asked of the card.
@@ -52,6 +52,9 @@ impl CardFlags {
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Card")]
 pub(super) struct UnitFlags {
+    /// Accuracy by name: anti-aliasing, depths and coordinates; other flags go before it. See zga accuracy presets
+    #[arg(long, value_name = "NAME", value_parser = named(&PRESETS))]
+    preset: Option<Preset>,
     /// How units with a clocked model are simulated; picture and clocks do not depend on it
     #[arg(long, value_name = "NAME", value_parser = named(&FIDELITIES))]
     fidelity: Option<Fidelity>,
@@ -94,6 +97,7 @@ impl UnitFlags {
     /// The same as card settings.
     pub(super) fn settings(&self) -> CardSettings {
         CardSettings {
+            preset: self.preset,
             fidelity: self.fidelity,
             antialias: self.antialias,
             subpixel_depth: self.subpixel_depth,

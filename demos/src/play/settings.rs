@@ -154,7 +154,8 @@ impl Settings {
             super_buffer: asked_variant.super_buffer.unwrap_or(plain.super_buffer),
         };
         let tile_size = card.tile_size.unwrap_or([8, 8]);
-        let subpixel_bits = asked.subpixel_bits.unwrap_or(8);
+        let preset_bits = card.preset.map(zga_driver::Preset::subpixel_bits);
+        let subpixel_bits = asked.subpixel_bits.or(preset_bits).unwrap_or(8);
         Ok(Self { hidden_surface, fidelity, depth, subpixel_bits, antialias, za, systolic, tile_size })
     }
 

@@ -9,7 +9,7 @@ use super::parse_draw::{self, Context};
 use super::parse_effects;
 use super::settings::{
     ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, HIDDEN_SURFACES, MOST_SUBPIXEL_POOL,
-    SUBPIXEL_DEPTHS, SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS,
+    PRESETS, SUBPIXEL_DEPTHS, SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS,
 };
 use super::{Camera, DARK, Orthographic, Perspective, Scene};
 use crate::error::{Error, Result};
@@ -116,6 +116,7 @@ fn placement(fields: &Object<'_>) -> Read<[[f32; 3]; 3]> {
 
 fn card(value: &Json) -> Read<CardSettings> {
     let fields = value.object(&[
+        "preset",
         "hidden_surface",
         "fidelity",
         "antialias",
@@ -131,6 +132,7 @@ fn card(value: &Json) -> Read<CardSettings> {
         "depth_fraction_bits",
     ])?;
     Ok(CardSettings {
+        preset: fields.optional("preset", |value| value.named(&PRESETS))?,
         hidden_surface: fields.optional("hidden_surface", |value| value.named(&HIDDEN_SURFACES))?,
         fidelity: fields.optional("fidelity", |value| value.named(&FIDELITIES))?,
         antialias: fields.optional("antialias", |value| value.named(&ANTIALIAS_GRIDS))?,

@@ -1,5 +1,7 @@
 //! What a scene may ask of the card. Every setting is optional: what is absent stays as the card has it.
 
+pub use zga_driver::Preset;
+
 pub use zga_abi::format::{
     EndTest, Fidelity, HiddenSurface, SubpixelDepth, SubpixelGrid, SubpixelResolve, TokenColour, TokenPorts,
     ZaPrediction,
@@ -63,9 +65,14 @@ pub const MOST_SUBPIXEL_POOL: u32 = 1 << 20;
 /// Sides that a tile of the tile unit can have, in pixels.
 pub const TILE_SIDES: [u32; 5] = [4, 8, 16, 32, 64];
 
+/// Presets of accuracy, by name.
+pub const PRESETS: [(&str, Preset); Preset::ALL.len()] = names_of!(Preset);
+
 /// Settings of the card; `None` leaves the card's own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CardSettings {
+    /// Settings of accuracy that belong together; those that are named beside it go before it.
+    pub preset: Option<Preset>,
     /// Which path decides what is hidden.
     pub hidden_surface: Option<HiddenSurface>,
     /// How the units with a clocked model are simulated.
@@ -108,11 +115,31 @@ pub struct SystolicSettings {
 }
 
 impl CardSettings {
-    /// These settings; what they leave open is as in `other`.
+    /// What the preset stands for is filled in where nothing else is asked for.
+    #[must_use]
+    pub fn filled(self) -> Self {
+        let Some(preset) = self.preset else { return self };
+        let (antialias, depth) = (preset.antialias(), preset.depth());
+        Self {
+            antialias: self.antialias.or(Some(antialias.grid)),
+            subpixel_depth: self.subpixel_depth.or(Some(antialias.depth)),
+            depth_bits: self.depth_bits.or(Some(depth.bits())),
+            depth_fraction_bits: self.depth_fraction_bits.or(Some(depth.fraction())),
+            ..self
+        }
+    }
+
+    /// These settings, presets filled in; what they leave open is as in `other`.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
+        let (this, other) = (self.filled(), other.filled());
+        this.before(other)
+    }
+
+    fn before(self, other: Self) -> Self {
         let (systolic, others) = (self.systolic_variant, other.systolic_variant);
         Self {
+            preset: self.preset.or(other.preset),
             hidden_surface: self.hidden_surface.or(other.hidden_surface),
             fidelity: self.fidelity.or(other.fidelity),
             antialias: self.antialias.or(other.antialias),
@@ -132,5 +159,26 @@ impl CardSettings {
             depth_bits: self.depth_bits.or(other.depth_bits),
             depth_fraction_bits: self.depth_fraction_bits.or(other.depth_fraction_bits),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn or_presets_fill_in_and_what_is_named_goes_before_them() {
+        let plain = CardSettings::default();
+        let scene = CardSettings { preset: Some(Preset::Exact), antialias: Some(SubpixelGrid::Grid8x4), ..plain };
+        let own = plain.or(scene);
+        assert_eq!((own.antialias, own.depth_bits), (Some(SubpixelGrid::Grid8x4), Some(31)));
+        // A preset of the command line goes before all that the scene says of accuracy.
+        let asked = CardSettings { preset: Some(Preset::Draft), depth_bits: Some(24), ..plain };
+        let both = asked.or(scene);
+        assert_eq!(
+            (both.antialias, both.depth_bits, both.depth_fraction_bits),
+            (Some(SubpixelGrid::Off), Some(24), Some(16))
+        );
+        assert_eq!(both.preset, Some(Preset::Draft));
     }
 }

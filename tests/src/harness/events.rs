@@ -96,6 +96,16 @@ impl Events {
         self
     }
 
+    /// Nothing counted.
+    pub const NONE: Self = Self([0; NAMES.len()]);
+
+    /// Counts of this and of `other` together.
+    #[must_use]
+    pub fn plus(mut self, other: &Self) -> Self {
+        self.0.iter_mut().zip(other.0).for_each(|(sum, count)| *sum += count);
+        self
+    }
+
     /// What differs from `other`: name, value here, value there.
     #[must_use]
     pub fn differences(&self, other: &Self) -> Vec<(&'static str, u64, u64)> {

@@ -72,20 +72,27 @@ pub struct Errors {
     pub near_axis: f64,
     /// Largest error.
     pub largest: f64,
+    /// One standard error of the root mean square error.
+    pub standard_error: f64,
 }
 
 /// Sums up what was covered against what should have been.
 #[must_use]
 pub fn errors(pairs: impl IntoIterator<Item = (HalfPlane, f64)>) -> Errors {
-    let (mut all, mut near, mut largest) = ((0, 0.0), (0, 0.0), 0.0_f64);
+    let (mut all, mut near, mut largest, mut fourth) = ((0, 0.0), (0, 0.0), 0.0_f64, 0.0);
     for (half_plane, covered) in pairs {
         let error = covered - half_plane.area;
         all = (all.0 + 1, all.1 + error * error);
+        fourth += error.powi(4);
         near = if half_plane.near { (near.0 + 1, near.1 + error * error) } else { near };
         largest = largest.max(error.abs());
     }
     let root = |(count, sum): (u32, f64)| (sum / f64::from(count.max(1))).sqrt();
-    Errors { samples: all.0, rmse: root(all), near_axis: root(near), largest }
+    let (count, rmse) = (f64::from(all.0.max(1)), root(all));
+    // Of the mean square, by its own variance; of its root half of that, relatively.
+    let of_square = ((fourth / count - rmse.powi(4)).max(0.0) / count).sqrt();
+    let standard_error = if rmse > 0.0 { of_square / (2.0 * rmse) } else { 0.0 };
+    Errors { samples: all.0, rmse, near_axis: root(near), largest, standard_error }
 }
 
 /// The card's errors over at least `samples` half-planes.

@@ -1,124 +1,111 @@
 //! How often fragments are put in the wrong order inside a pixel, and how many depths are worked out for it.
 //!
-//! The same scene in the three ways to order fragments; sample by sample is right by definition. A pixel is wrong when it
-//! differs from that.
+//! Random scenes in the three ways to order fragments, each compared with the exact picture of the grid's own samples:
+//! every sample shows the triangle whose exact plane is nearest there. A pixel is wrong when it differs from the mean of
+//! that by more than rounding. Vertices lie on the card's grid and depths have 31 bits with 24 fraction bits, so that
+//! neither the snap nor the depth format has a part in it.
 
-use crate::harness::{Grid, Options, Order, Random, Screen, State, Subpixel};
-use crate::oracle::{Primitive, Vertex};
+use super::card::{self, Setting};
+use super::scene::Kind;
+use super::truth::{Truth, truth};
+use crate::harness::{Grid, Order, Random};
 
 /// Pixels a side.
-const SIDE: u32 = 96;
-
-/// Random scenes of a kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Triangles of a few pixels, deep in one another.
-    Soup,
-    /// Large planes that cross.
-    Crossing,
-    /// Two surfaces of many triangles, a little apart, that cross here and there.
-    Terrain,
-}
-
-impl Kind {
-    /// All three.
-    pub const ALL: [Self; 3] = [Self::Soup, Self::Crossing, Self::Terrain];
-
-    /// A scene; colours tell primitives apart, but those of a surface are alike.
-    #[must_use]
-    pub fn scene(self, random: &mut Random) -> Vec<Primitive> {
-        match self {
-            Self::Soup => (0..1500).map(|_| soup(random)).collect(),
-            Self::Crossing => (0..24).map(|_| crossing(random)).collect(),
-            Self::Terrain => [0, 1].into_iter().flat_map(|number| terrain(random, number)).collect(),
-        }
-    }
-}
-
-fn colour(random: &mut Random) -> [u8; 4] {
-    let [r, g, b, _] = (random.bits() as u32).to_le_bytes();
-    [r, g, b, 255]
-}
-
-fn soup(random: &mut Random) -> Primitive {
-    let place = [0; 2].map(|_: i32| random.int(0, SIDE as i32 * 256));
-    let (z, colour) = (random.int(1 << 20, 1 << 23), colour(random));
-    Primitive::Triangle([0; 3].map(|_: i32| {
-        let [x, y] = place.map(|c| c + random.int(-1500, 1500));
-        Vertex::at(x, y, (z + random.int(-1 << 18, 1 << 18)) as u32).coloured(colour)
-    }))
-}
-
-fn crossing(random: &mut Random) -> Primitive {
-    let colour = colour(random);
-    let corners = [(-60, -60), (200, -40), (30, 220)];
-    Primitive::Triangle(corners.map(|(x, y)| {
-        let [x, y] = [x, y].map(|c| c * 256 + random.int(-5000, 5000));
-        Vertex::at(x, y, random.int(1 << 20, 1 << 23) as u32).coloured(colour)
-    }))
-}
-
-/// A height field over the frame, 24 x 24 cells of 4 pixels, corners moved by up to a pixel.
-fn terrain(random: &mut Random, number: i32) -> Vec<Primitive> {
-    let colour = [[230, 60, 20, 255], [20, 90, 240, 255]][number as usize];
-    let vertices: Vec<Vertex> = (0..25 * 25)
-        .map(|k| {
-            let [x, y] = [k % 25, k / 25].map(|c| c * 1024 + random.int(-256, 256));
-            Vertex::at(x, y, ((1 << 22) + random.int(-1 << 16, 1 << 16)) as u32).coloured(colour)
-        })
-        .collect();
-    let cell = |k: usize| {
-        let [a, b, c, d] = [k, k + 1, k + 25, k + 26].map(|k| vertices[k]);
-        [Primitive::Triangle([a, b, c]), Primitive::Triangle([c, b, d])]
-    };
-    (0..24 * 25).filter(|k| k % 25 < 24).flat_map(cell).collect()
-}
+pub const SIDE: u32 = 96;
 
 /// What a way to order cost and did.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// Pixels of the sub-pixel unit.
-    pub active: u64,
-    /// Those that are not as sample by sample.
+    /// Pixels of all scenes.
+    pub pixels: u64,
+    /// Those that show more than one thing at their samples.
+    pub edges: u64,
+    /// Of these the wrong ones.
     pub wrong: u64,
-    /// Sum of the wrong pixels' largest channel errors, levels.
-    pub levels: u64,
+    /// Those in which two triangles cut each other.
+    pub crossings: u64,
+    /// Of these the wrong ones.
+    pub wrong_crossings: u64,
+    /// Sum over the edge pixels of the distance of the farthest channel, levels.
+    pub levels: f64,
+    /// Largest such distance.
+    pub largest: f64,
     /// `subpixel.depth_evaluations`.
     pub evaluations: u64,
-    /// `cycles.subpixel`.
+    /// Clocks of all units but the front end.
     pub clocks: u64,
+    /// Host time of a scene, nanoseconds: for each repeat the sum over the scenes.
+    pub nanoseconds: Vec<f64>,
 }
 
-/// The three ways, in the order of [`Order::ALL`], over `scenes` scenes.
+/// Wrong of all, percent.
 #[must_use]
-pub fn of_card(grid: Grid, kind: Kind, scenes: usize, seed: u64) -> [Outcome; 3] {
+pub fn percent(wrong: u64, all: u64) -> f64 {
+    100.0 * wrong as f64 / all.max(1) as f64
+}
+
+/// A scene with one wrong pixel that is worth looking at.
+#[derive(Clone, Debug)]
+pub struct Example {
+    /// The exact picture.
+    pub truth: Truth,
+    /// In the three ways, XRGB8888.
+    pub pictures: [Vec<u32>; 3],
+}
+
+/// The three ways, in the order of [`Order::ALL`], over `scenes` scenes, and the first scene.
+#[must_use]
+pub fn of_card(
+    grid: Grid,
+    kind: Kind,
+    scenes: usize,
+    threads: usize,
+    repeats: usize,
+    seed: u64,
+) -> ([Outcome; 3], Example) {
     let mut random = Random::new(seed);
-    let mut outcomes = [Outcome::default(); 3];
-    let mut screens = Order::ALL.map(|depth| {
-        let subpixel = Subpixel { depth, ..Subpixel::on(grid) };
-        Screen::new(SIDE, SIDE, &Options { subpixel, ..Options::default() })
-    });
-    for _ in 0..scenes {
-        let scene = kind.scene(&mut random);
-        let pictures = screens.each_mut().map(|screen| {
-            screen.clear();
-            screen.clear_counts();
-            screen.draw(&scene, &State::masked());
-            (screen.read().colour, screen.events())
-        });
-        let exact = &pictures[Order::Exhaustive as usize].0;
-        for (outcome, (colour, events)) in outcomes.iter_mut().zip(&pictures) {
-            let channels = |pixel: u32| pixel.to_be_bytes();
-            let far = |(&a, &b): (&u32, &u32)| {
-                channels(a).into_iter().zip(channels(b)).map(|(a, b)| u64::from(a.abs_diff(b))).max().unwrap_or(0)
-            };
-            let distances: Vec<u64> = colour.iter().zip(exact).map(far).filter(|&levels| levels > 0).collect();
-            outcome.active += events["subpixel.pixels_active"];
-            outcome.wrong += distances.len() as u64;
-            outcome.levels += distances.iter().sum::<u64>();
-            outcome.evaluations += events["subpixel.depth_evaluations"];
-            outcome.clocks += events["cycles.subpixel"];
+    let mut outcomes = [Outcome::default(), Outcome::default(), Outcome::default()];
+    let mut example = None;
+    let settings = Order::ALL.map(|order| Setting { grid, order, ..Setting::best() });
+    for _ in 0..scenes.max(1) {
+        let scene = kind.scene([SIDE; 2], &mut random).snapped();
+        let exact = truth(&scene, grid.size());
+        let all = card::drawn(&scene, &settings, threads, repeats);
+        for (outcome, drawn) in outcomes.iter_mut().zip(&all) {
+            outcome.pixels += drawn.colour.len() as u64;
+            for (at, (&shown, pixel)) in drawn.colour.iter().zip(&exact.pixels).enumerate().filter(|(_, p)| p.1.edge) {
+                let wrong = u64::from(exact.is_wrong(at, shown));
+                outcome.edges += 1;
+                outcome.wrong += wrong;
+                outcome.crossings += u64::from(pixel.crossing);
+                outcome.wrong_crossings += wrong * u64::from(pixel.crossing);
+                outcome.levels += exact.distance(at, shown);
+                outcome.largest = outcome.largest.max(exact.distance(at, shown));
+            }
+            outcome.evaluations += drawn.events["subpixel.depth_evaluations"];
+            outcome.clocks += drawn.clocks;
+            outcome.nanoseconds.resize(repeats, 0.0);
+            outcome.nanoseconds.iter_mut().zip(&drawn.nanoseconds).for_each(|(sum, time)| *sum += time);
         }
+        let pictures =
+            || all.iter().map(|drawn| drawn.colour.clone()).collect::<Vec<_>>().try_into().unwrap_or_default();
+        example.get_or_insert_with(|| Example { truth: exact, pictures: pictures() });
     }
-    outcomes
+    let empty = || Example { truth: truth(&kind.scene([1; 2], &mut random), [1, 1]), pictures: Default::default() };
+    (outcomes, example.unwrap_or_else(empty))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_card_exhaustive_is_right_and_centre_is_not_where_planes_cross() {
+        let ([centre, search, exhaustive], _) = of_card(Grid::Grid8x8, Kind::Crossing, 1, 1, 1, 2);
+
+        assert_eq!((exhaustive.wrong, exhaustive.wrong_crossings), (0, 0));
+        assert!(centre.wrong_crossings * 2 > centre.crossings && centre.crossings > 50, "{centre:?}");
+        assert!(search.wrong < centre.wrong / 4, "{search:?}");
+        assert!(centre.evaluations < search.evaluations);
+    }
 }

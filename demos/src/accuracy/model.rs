@@ -1,0 +1,94 @@
+//! The mesh as the studies draw it: in eye space, turned and scaled to fit, all of it in front of the near plane.
+
+use zga_tests::oracle::effects::Corner;
+use zga_tests::study::scene::{FAR, Facet, REACH, Scene, UNITS};
+
+use crate::mesh::Mesh;
+
+/// Radius of the mesh in eye space, and how far before the eye its middle is: nothing is nearer than 1.2.
+const RADIUS: f64 = 2.0;
+const DISTANCE: f64 = 3.2;
+/// Near and far plane of the studies' camera.
+const PLANES: [f64; 2] = [1.0, 1024.0];
+
+/// Three corners for each triangle, in eye space: x to the right, y up, looking down -z. The view is 90 degrees wide and
+/// high; x is narrowed so that pixels of a picture of `size` are square. `turn` is about the vertical, in degrees.
+#[must_use]
+pub fn corners(mesh: &Mesh, size: [u32; 2], turn: f64) -> Vec<Corner> {
+    let bounds = mesh.bounds();
+    let centre = bounds.centre.map(f64::from);
+    let scale = RADIUS / f64::from(bounds.radius).max(1e-30);
+    let narrow = (f64::from(size[1]) / f64::from(size[0].max(1))).min(1.0);
+    let (sin, cos) = turn.to_radians().sin_cos();
+    let (tilt_sin, tilt_cos) = 24_f64.to_radians().sin_cos();
+    let turned = |[x, y, z]: [f64; 3]| {
+        let (x, z) = (cos * x + sin * z, cos * z - sin * x);
+        [x, tilt_cos * y - tilt_sin * z, tilt_sin * y + tilt_cos * z]
+    };
+    let place = |index: u32| {
+        let position = mesh.positions[index as usize].map(f64::from);
+        let [x, y, z] = turned([0, 1, 2].map(|k| (position[k] - centre[k]) * scale));
+        [x * narrow, y, z - DISTANCE]
+    };
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let mut all = Vec::with_capacity(mesh.indices.len());
+    for triangle in mesh.indices.as_chunks::<3>().0 {
+        let places = triangle.map(place);
+        let side = |k: usize| [0, 1, 2].map(|axis| places[k][axis] - places[0][axis]);
+        let face = cross(side(1), side(2));
+        for (index, at) in triangle.iter().zip(places) {
+            let normal = match &mesh.normals {
+                Some(normals) => turned(normals[*index as usize].map(f64::from)),
+                None => face,
+            };
+            all.push(Corner {
+                position: at.map(|c| c as f32),
+                colour: 0xFFC8_B8A0,
+                normal: normal.map(|c| c as f32),
+                coordinates: [0.0; 2],
+            });
+        }
+    }
+    all
+}
+
+/// The same on the screen, each triangle in one colour by how it faces a light; `base` is the colour in full light.
+/// Triangles that would not fit the exact numbers are left out.
+#[must_use]
+pub fn facets(corners: &[Corner], size: [u32; 2], base: [u8; 3]) -> Vec<Facet> {
+    let [near, far] = PLANES;
+    let project = |corner: &Corner| {
+        let [x, y, z] = corner.position.map(f64::from);
+        let half = size.map(|side| f64::from(side) / 2.0);
+        let pixels = [half[0] * (1.0 + x / -z), half[1] * (1.0 - y / -z)];
+        let depth = far / (far - near) * (1.0 - near / -z);
+        (pixels.map(|c| (c * f64::from(UNITS)).round() as i32), (depth * f64::from(FAR)).round() as i32)
+    };
+    let facet = |three: &[Corner; 3]| {
+        let at = three.each_ref().map(project);
+        let side = |k: usize| [0, 1, 2].map(|axis| f64::from(three[k].position[axis] - three[0].position[axis]));
+        let (a, b) = (side(1), side(2));
+        let face = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let length = face.iter().map(|c| c * c).sum::<f64>().sqrt().max(1e-30);
+        let light = ((0.4 * face[0] + 0.6 * face[1] + 0.7 * face[2]) / length).abs();
+        let colour = base.map(|level| (f64::from(level) * (0.25 + 0.75 * light.min(1.0))).round() as u8);
+        let fits = at.iter().all(|(place, depth)| place.iter().all(|c| c.abs() <= REACH) && (0..=FAR).contains(depth));
+        fits.then(|| Facet { corners: at.map(|corner| corner.0), depths: at.map(|corner| corner.1), colour })
+    };
+    corners.as_chunks::<3>().0.iter().filter_map(facet).collect()
+}
+
+/// The mesh alone.
+#[must_use]
+pub fn scene(mesh: &Mesh, size: [u32; 2]) -> Scene {
+    Scene { size, facets: facets(&corners(mesh, size, 25.0), size, [236, 226, 205]) }
+}
+
+/// The mesh twice, turned against each other, so that the two cut each other everywhere.
+#[must_use]
+pub fn crossing(mesh: &Mesh, size: [u32; 2]) -> Scene {
+    let mut facets_of_both = facets(&corners(mesh, size, 25.0), size, [236, 190, 120]);
+    facets_of_both.extend(facets(&corners(mesh, size, 70.0), size, [110, 170, 240]));
+    Scene { size, facets: facets_of_both }
+}
