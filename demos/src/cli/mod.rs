@@ -16,6 +16,7 @@ mod progress;
 mod registers;
 mod show;
 mod source;
+mod stability;
 mod trace;
 mod waves;
 
@@ -61,6 +62,7 @@ enum Command {
     Trace(trace::Trace),
     Paths(paths::Paths),
     Accuracy(accuracy::Accuracy),
+    Stability(stability::Stability),
     Effects(effects::Effects),
     Waves(waves::Waves),
     Bench(bench::Bench),
@@ -88,6 +90,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Trace(command)) => command.run(),
         Some(Command::Paths(command)) => command.run(),
         Some(Command::Accuracy(command)) => command.run(),
+        Some(Command::Stability(command)) => command.run(),
         Some(Command::Effects(command)) => command.run(),
         Some(Command::Waves(command)) => command.run(),
         Some(Command::Bench(command)) => command.run(),

@@ -1,7 +1,7 @@
 //! The hard cases: constructions that break rasterisers, each with what must hold and what was measured.
 //!
 //! The list is the one in the manual, chapter "Numbers"; a case keeps its number there. Each is a function that draws on
-//! a card of its own and returns a [`Row`]; [`CASES`] has all of them. There is no slack: a row passes when no sample is
+//! a card of its own and returns a [`Row`]; [`CASES`] has all of them, `zga stability` shows them, and each is a test. There is no slack: a row passes when no sample is
 //! wrong, unless its property says otherwise.
 //!
 //! Targets of 16384 pixels are strips of 16384 x 8 (or 8 x 16384): a whole one would take 2 GiB. The strip lies where
@@ -12,6 +12,7 @@ use crate::oracle::{DepthFormat, DepthFunction, Primitive, draw};
 use std::fmt;
 
 pub mod card;
+pub mod decals;
 pub mod depth;
 pub mod lines;
 pub mod rasteriser;
@@ -45,63 +46,115 @@ impl fmt::Display for Row {
     }
 }
 
+/// The list of all cases, handed to a macro as `unit { number name; ... } ...`: what needs each of them by name, the report
+/// or a test, is made from this one list.
+#[macro_export]
+macro_rules! hard_cases {
+    ($take:ident) => {
+        $take! {
+            rasteriser {
+                1 small_triangles_at_a_centre;
+                2 nearly_shared_floats;
+                3 fans_with_the_hub_on_a_centre;
+                4 rotated_quads_in_perspective;
+                5 sliver_across_the_widest_target;
+                6 least_area;
+                7 vertices_at_the_limits;
+                8 beyond_the_guard_band;
+                9 shared_edge_clipped_on_one_side;
+                10 vertices_at_and_behind_the_eye;
+                11 numbers_that_are_none;
+                12 t_junction;
+                13 shifts_orders_and_threads;
+                14 coordinates_near_the_integer_minimum;
+            }
+            depth {
+                15 flat_across_the_widest_target;
+                16 whole_range_across_the_target;
+                17 one_step_across_the_target;
+                18 steepest_plane;
+                19 offset_of_all_depths;
+                20 equal_after_less;
+                21 offsets_at_the_limits;
+                22 planes_that_cross;
+            }
+            za {
+                23 words_are_maxima;
+                24 last_of_thirty_two;
+                25 equal_to_the_word;
+                26 predictor_overflow;
+                27 one_pixel_in_a_cleared_block;
+                28 largest_depth;
+                29 no_stale_bypass;
+                30 widths_beside_blocks;
+                31 every_block_shape;
+            }
+            systolic {
+                32 one_element;
+                33 equal_depths;
+                34 beyond_both_ends;
+                35 refresh_with_tokens_in_flight;
+                36 extreme_gradients;
+                37 disjoint_segments_permuted;
+            }
+            subpixel {
+                38 edges_through_samples;
+                39 start_corner_ties;
+                40 fans_inside_a_pixel;
+                41 doubling_back_on_a_diagonal;
+                42 interpenetration;
+                43 many_layers;
+                44 merge_in_any_order;
+                45 triangles_between_samples;
+            }
+            decals {
+                46 nothing_buried_up_to_the_limit;
+                47 offset_under_one_step;
+                48 same_pixels_with_and_without;
+                49 occluder_at_the_offset;
+                50 silhouettes_and_refusal;
+                51 edge_on_surface;
+            }
+            texture {
+                52 level_weights;
+                53 quad_across_the_eye;
+                54 widest_span_of_w;
+                55 equal_layers;
+                56 holes_at_the_reference;
+            }
+            lines {
+                57 zero_length;
+                58 diamond_corners;
+                59 polylines_and_the_longest_line;
+            }
+            card {
+                60 again_in_pieces_after_reset_and_restore;
+            }
+        }
+    };
+}
+
+/// A case that can be run.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Number in the manual.
+    pub number: u32,
+    /// The unit it is about.
+    pub unit: &'static str,
+    /// Its name; the test is `hard::<unit>::<name>`.
+    pub name: &'static str,
+    /// Draws it.
+    pub run: fn() -> Row,
+}
+
+macro_rules! list {
+    ($($unit:ident { $($number:literal $name:ident;)+ })+) => {
+        &[$($(Case { number: $number, unit: stringify!($unit), name: stringify!($name), run: $unit::$name },)+)+]
+    };
+}
+
 /// Every case, in the order of the numbers.
-pub const CASES: &[fn() -> Row] = &[
-    rasteriser::small_triangles_at_a_centre,
-    rasteriser::nearly_shared_floats,
-    rasteriser::fans_with_the_hub_on_a_centre,
-    rasteriser::rotated_quads_in_perspective,
-    rasteriser::sliver_across_the_widest_target,
-    rasteriser::least_area,
-    rasteriser::vertices_at_the_limits,
-    rasteriser::beyond_the_guard_band,
-    rasteriser::shared_edge_clipped_on_one_side,
-    rasteriser::vertices_at_and_behind_the_eye,
-    rasteriser::numbers_that_are_none,
-    rasteriser::t_junction,
-    rasteriser::shifts_orders_and_threads,
-    rasteriser::coordinates_near_the_integer_minimum,
-    depth::flat_across_the_widest_target,
-    depth::whole_range_across_the_target,
-    depth::one_step_across_the_target,
-    depth::steepest_plane,
-    depth::offset_of_all_depths,
-    depth::equal_after_less,
-    depth::offsets_at_the_limits,
-    depth::planes_that_cross,
-    za::words_are_maxima,
-    za::last_of_thirty_two,
-    za::equal_to_the_word,
-    za::predictor_overflow,
-    za::one_pixel_in_a_cleared_block,
-    za::largest_depth,
-    za::no_stale_bypass,
-    za::widths_beside_blocks,
-    za::every_block_shape,
-    systolic::one_element,
-    systolic::equal_depths,
-    systolic::beyond_both_ends,
-    systolic::refresh_with_tokens_in_flight,
-    systolic::extreme_gradients,
-    systolic::disjoint_segments_permuted,
-    subpixel::edges_through_samples,
-    subpixel::start_corner_ties,
-    subpixel::fans_inside_a_pixel,
-    subpixel::doubling_back_on_a_diagonal,
-    subpixel::interpenetration,
-    subpixel::many_layers,
-    subpixel::merge_in_any_order,
-    subpixel::triangles_between_samples,
-    texture::level_weights,
-    texture::quad_across_the_eye,
-    texture::widest_span_of_w,
-    texture::equal_layers,
-    texture::holes_at_the_reference,
-    lines::zero_length,
-    lines::diamond_corners,
-    lines::polylines_and_the_longest_line,
-    card::again_in_pieces_after_reset_and_restore,
-];
+pub const CASES: &[Case] = hard_cases!(list);
 
 /// What several pictures showed.
 #[derive(Clone, Debug, Default)]

@@ -10,6 +10,7 @@
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
+use std::ops::Range;
 
 use super::exact::{Fraction, integer, round_half_up};
 use super::raster::line::is_x_major;
@@ -111,6 +112,12 @@ impl TrueDepth {
         };
         Fraction::new(numerator, plane.d)
     }
+
+    /// The change of depth for a pixel to the right; `None` where limits may bend the plane.
+    #[must_use]
+    pub fn step(&self) -> Option<Fraction> {
+        (!self.plane.limited).then(|| Fraction::new(self.step_x, self.plane.d))
+    }
 }
 
 /// The card's depth of a primitive: everything that its setup computes.
@@ -170,6 +177,34 @@ impl PrescribedDepth {
         rounded.clamp(self.least.into(), self.greatest.into()) as u32
     }
 
+    /// The depths that the card stores on a run of row `j`: [`PrescribedDepth::along_at`] the centres.
+    #[must_use]
+    pub fn along(&self, run: Range<u32>, j: u32) -> Along {
+        self.along_at(run, j, [128, 128])
+    }
+
+    /// The depths that the card gives to a sample of each pixel of a run of row `j`; the sample lies `at` in 1/256 pixel
+    /// from the pixels' upper left corners.
+    ///
+    /// Along a row the depth is a sum of equal steps. It lies between its values at the run's ends: where those are far
+    /// from the limits of 64 bits, so is everything between.
+    #[must_use]
+    pub fn along_at(&self, run: Range<u32>, j: u32, at: [u32; 2]) -> Along {
+        let j = j as i32;
+        let sum = |i: u32| i64::try_from(self.interpolated_in(i as i32, j, at)).ok().filter(|z| z.abs() < 1 << 61);
+        match (sum(run.start), run.end.checked_sub(1).and_then(sum)) {
+            (Some(first), Some(_)) => Along::Narrow(Sums {
+                first: first + if self.fraction == 0 { 0 } else { 128 << self.fraction },
+                // A step that does not fit is never taken: the run is one pixel.
+                step: i64::try_from(256 * self.step_x).unwrap_or_default(),
+                count: run.len() as u32,
+                shift: self.fraction + 8,
+                limits: [self.least.into(), self.greatest.into()],
+            }),
+            _ => Along::Wide(run.map(|i| self.stored_in(i as i32, j, at)).collect()),
+        }
+    }
+
     /// The depth at a sample of pixel `(i, j)` that lies `(u, v)` in 1/256 pixel from the pixel's upper left corner,
     /// before the last rounding and the limits: in 2^-F steps, times 256.
     #[must_use]
@@ -195,6 +230,51 @@ impl PrescribedDepth {
         let across = (i128::from(i) - i128::from(self.anchor_x)).abs();
         let down = (i128::from(j) - i128::from(self.anchor_y)).abs();
         integer(across + down + 1) / integer(BigInt::from(2u32) << self.fraction)
+    }
+}
+
+/// The stored depths of a run of pixels, from left to right.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// Sums in 64 bits.
+    Narrow(Sums),
+    /// Depth by depth.
+    Wide(Vec<u32>),
+}
+
+/// Equal steps in 64 bits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sums {
+    /// In 2^-(F + 8) steps, with the half that makes dropping the fraction a rounding.
+    first: i64,
+    step: i64,
+    count: u32,
+    shift: u32,
+    limits: [i64; 2],
+}
+
+impl Along {
+    /// The depth of the `k`-th pixel of the run.
+    #[must_use]
+    pub fn at(&self, k: u32) -> u32 {
+        match self {
+            Self::Narrow(sums) => sums.at(k),
+            Self::Wide(depths) => depths[k as usize],
+        }
+    }
+}
+
+impl Sums {
+    /// The depth of the `k`-th pixel of the run.
+    #[must_use]
+    fn at(&self, k: u32) -> u32 {
+        let [least, greatest] = self.limits;
+        ((self.first + i64::from(k) * self.step) >> self.shift).clamp(least, greatest) as u32
+    }
+
+    /// The depths of the run.
+    pub fn iter(&self) -> impl Iterator<Item = u32> {
+        (0..self.count).map(|k| self.at(k))
     }
 }
 

@@ -121,7 +121,7 @@ fn stored_coordinate_extremes_have_no_overflow() {
     assert_eq!(truth.at(-1, -1).floor(), i128::from(z) - 128);
 }
 
-fn points(range: std::ops::Range<i32>) -> impl Strategy<Value = [(i32, i32, u32); 3]> {
+fn points(range: Range<i32>) -> impl Strategy<Value = [(i32, i32, u32); 3]> {
     prop::array::uniform3((range.clone(), range, 0u32..=0x7fff_ffff))
 }
 

@@ -1,11 +1,17 @@
 //! The picture that the card must show, bit for bit: primitives in submission order, one depth test for each covered
 //! pixel with the prescribed stored depths.
 //!
+//! [`draw_plain`] says it in so many words, pixel by pixel. [`draw`] is the same faster, and tests hold it to that: rows
+//! are exact runs ([`super::raster::rows`]), depths are summed along them (in 64 bits where both ends of the run say that
+//! these are enough), and bands of rows go to threads ([`super::bands`]).
+//!
 //! Nothing is said about colours here: the winner's index tells whose colour a pixel has ([`super::colour`]).
 
-use super::depth::PrescribedDepth;
-use super::raster::for_each_pixel;
+use super::bands;
+use super::depth::{Along, PrescribedDepth};
+use super::raster::{Rows, for_each_pixel};
 use super::{DepthFormat, DepthFunction, Primitive};
+use std::ops::Range;
 
 /// What each pixel holds, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,12 +53,33 @@ impl Image {
 
     /// Draws more primitives over what is there. Their indices go on from the earlier ones.
     pub fn draw(&mut self, primitives: &[Primitive], function: DepthFunction) {
-        for primitive in primitives {
-            self.draw_one(primitive, function);
+        let (width, height) = (self.width, self.height);
+        let first = self.submitted;
+        self.submitted += primitives.len() as u32;
+        if width == 0 || height == 0 {
+            return;
         }
+        let set_up = |primitive| (Rows::new(primitive, width, height), PrescribedDepth::new(primitive, self.format));
+        let set_up: Vec<(Rows, Option<PrescribedDepth>)> = primitives.iter().map(set_up).collect();
+        let bins = bands::bins(height, set_up.iter().map(|(rows, _)| rows.rows()));
+        let pixels = (bands::ROWS * width) as usize;
+        let planes = self.depth.chunks_mut(pixels).zip(self.winner.chunks_mut(pixels));
+        let counts = self.layers.chunks_mut(pixels).zip(self.writes.chunks_mut(pixels));
+        let bands =
+            (0..).zip(bins).zip(planes.zip(counts)).map(|((band, bin), ((depth, winner), (layers, writes)))| {
+                (Band { top: band * bands::ROWS, width, depth, winner, layers, writes }, bin)
+            });
+        let work = set_up.iter().map(|(rows, _)| rows.work()).sum();
+        bands::each(bands, work, |(mut band, bin)| {
+            for index in bin {
+                if let (rows, Some(depth)) = &set_up[index as usize] {
+                    band.draw(rows, depth, first + index, function);
+                }
+            }
+        });
     }
 
-    fn draw_one(&mut self, primitive: &Primitive, function: DepthFunction) {
+    fn draw_one_plain(&mut self, primitive: &Primitive, function: DepthFunction) {
         let index = self.submitted;
         self.submitted += 1;
         let Some(depth) = PrescribedDepth::new(primitive, self.format) else {
@@ -77,6 +104,45 @@ impl Image {
     }
 }
 
+/// Some rows of an image.
+struct Band<'a> {
+    top: u32,
+    width: u32,
+    depth: &'a mut [u32],
+    winner: &'a mut [Option<u32>],
+    layers: &'a mut [u32],
+    writes: &'a mut [u32],
+}
+
+impl Band<'_> {
+    fn draw(&mut self, rows: &Rows, depth: &PrescribedDepth, index: u32, function: DepthFunction) {
+        for row in 0..self.depth.len() as u32 / self.width {
+            let j = self.top + row;
+            rows.for_each_run(j, |run| {
+                let pixels = (row * self.width + run.start) as usize..(row * self.width + run.end) as usize;
+                self.run(pixels, &depth.along(run, j), index, function);
+            });
+        }
+    }
+
+    fn run(&mut self, pixels: Range<usize>, depths: &Along, index: u32, function: DepthFunction) {
+        self.layers[pixels.clone()].iter_mut().for_each(|layers| *layers += 1);
+        let held = self.depth[pixels.clone()].iter_mut().zip(&mut self.winner[pixels.clone()]);
+        let held = held.zip(&mut self.writes[pixels]);
+        let put = |(((depth, winner), writes), new): (((&mut u32, &mut Option<u32>), &mut u32), u32)| {
+            if function.passes(&new, depth) {
+                *depth = new;
+                *winner = Some(index);
+                *writes += 1;
+            }
+        };
+        match depths {
+            Along::Narrow(depths) => held.zip(depths.iter()).for_each(put),
+            Along::Wide(depths) => held.zip(depths.iter().copied()).for_each(put),
+        }
+    }
+}
+
 /// Draws a scene on a cleared target of `width` x `height` pixels.
 #[must_use]
 pub fn draw(width: u32, height: u32, primitives: &[Primitive], format: DepthFormat, function: DepthFunction) -> Image {
@@ -85,11 +151,26 @@ pub fn draw(width: u32, height: u32, primitives: &[Primitive], format: DepthForm
     image
 }
 
+/// [`draw`] by definition: primitive by primitive, pixel by pixel, each depth worked out on its own.
+#[must_use]
+pub fn draw_plain(
+    width: u32,
+    height: u32,
+    primitives: &[Primitive],
+    format: DepthFormat,
+    function: DepthFunction,
+) -> Image {
+    let mut image = Image::cleared(width, height, format);
+    primitives.iter().for_each(|primitive| image.draw_one_plain(primitive, function));
+    image
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::Vertex;
     use super::super::raster::covers;
     use super::*;
+    use crate::harness::scenes;
     use proptest::prelude::*;
 
     fn quad(size: i32, z: u32) -> [Primitive; 2] {
@@ -165,6 +246,17 @@ mod tests {
                 }
                 prop_assert_eq!((image.depth[pixel as usize], image.winner[pixel as usize]), held);
             }
+        }
+
+        #[test]
+        fn draw_any_scene_equals_the_plain_form(
+            pieces in scenes::scene([70, 41], 24, 20), f in 0u32..4, bits in 0usize..3, function in 0usize..8,
+        ) {
+            let (format, function) = (DepthFormat { bits: [16, 24, 31][bits], fraction: f * 8 }, DepthFunction::ALL[function]);
+            // More than one thread's worth of work, with large depths for small formats too.
+            let scene: Vec<Primitive> = (0..16).flat_map(|_| scenes::primitives(&pieces)).collect();
+
+            prop_assert_eq!(draw(70, 41, &scene, format, function), draw_plain(70, 41, &scene, format, function));
         }
 
         #[test]

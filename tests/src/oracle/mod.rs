@@ -17,6 +17,9 @@
 //! | [`effects`] | texture, light, fog, blending, holes: exact where roundings are prescribed, ideal where they are not | the card's manual; see there |
 //! | [`exact`] | fractions, floors and roundings | arithmetic |
 //!
+//! Whole pictures have two forms: a plain one that is the definition, and a fast one that equals it, exact too
+//! (`bands`: rows as exact runs, shared out to threads). Example `oracle_time` tells what they take.
+//!
 //! Units: `u` is 1/256 pixel; pixel `(i, j)` is the square `[256 i, 256 i + 256] x [256 j, 256 j + 256]` with its
 //! centre at `(256 i + 128, 256 j + 128)`; y points down. Depths are integers, larger is farther; one *step* is one
 //! unit of the stored depth (1 LSB).
@@ -33,6 +36,7 @@
 //! assert_eq!(image.depth[15], (1 << 24) - 1);
 //! ```
 
+mod bands;
 pub mod canvas;
 pub mod clip;
 pub mod colour;

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use super::super::exact::{integer, ratio};
 use super::super::{Vertex, draw};
 use super::*;
+use crate::harness::scenes;
 
 /// A triangle over the whole of a 4 x 4 target, of depth `z` at x = 0 and `z + rise` 16 px to the right.
 fn cover(z: u32, rise: u32) -> Primitive {
@@ -77,7 +78,45 @@ fn judge_false_winners_are_measured() {
     assert_eq!(verdict.first_wrong, Some((0, 1)));
 }
 
+/// Everything of a picture, in a form that can be compared.
+fn parts(image: &TrueImage) -> (&[Option<u32>], Vec<Fraction>, &[Option<u32>], &[f64], &[bool]) {
+    let TrueImage { winner, depth, runner_up, gap_in_steps, ambiguous, .. } = image;
+    (winner, depth.clone(), runner_up, gap_in_steps, ambiguous)
+}
+
+#[test]
+fn draw_true_coincident_planes_in_other_triangles_are_told_apart_exactly() {
+    // One plane, z = x / 3 + y / 7 steps, as triangles of many sizes, and the same one least fraction nearer or farther.
+    let scene: Vec<Primitive> = (1..40)
+        .map(|k: i32| {
+            let z = |x: i32, y: i32| ((x + 21 * 8192) / 21 * 7 + y / 7 * 3 + k % 3) as u32;
+            let [a, b, c] = [(-21 * k, -7 * k), (21 * 900 + 42 * k, -14 * k), (-42 * k, 7 * 2000 + 7 * k)];
+            Primitive::Triangle([a, b, c].map(|(x, y)| Vertex::at(x, y, z(x, y))))
+        })
+        .collect();
+    for function in DepthFunction::ALL {
+        let fast = draw_true(40, 30, &scene, DepthFormat::default(), function);
+        let plain = draw_true_plain(40, 30, &scene, DepthFormat::default(), function);
+
+        assert_eq!(parts(&fast), parts(&plain), "{function:?}");
+    }
+}
+
 proptest! {
+    #[test]
+    fn draw_true_any_scene_equals_the_plain_form(
+        pieces in scenes::scene([70, 41], 24, 20), bits in 0usize..3, function in 0usize..8,
+    ) {
+        let (format, function) = (DepthFormat { bits: [16, 24, 31][bits], fraction: 24 }, DepthFunction::ALL[function]);
+        // Drawn over and over: ties everywhere, and more than one thread's worth of work.
+        let scene: Vec<Primitive> = (0..5).flat_map(|_| scenes::primitives(&pieces)).collect();
+
+        let fast = draw_true(70, 41, &scene, format, function);
+        let plain = draw_true_plain(70, 41, &scene, format, function);
+
+        prop_assert_eq!(parts(&fast), parts(&plain));
+    }
+
     #[test]
     fn draw_any_scene_loses_no_more_than_its_rounding(scene in scene(2048, 1 << 10, 12)) {
         let format = DepthFormat { bits: 16, fraction: 16 };

@@ -13,12 +13,14 @@
 //! | [`bypass`] | prediction of the Za unit | blocks that could have been bypassed and were not |
 //! | [`filter`] | texture filters | picture against the texture integrated over each pixel |
 //! | [`shading`] | where light is worked out | picture against light at each pixel in f64 |
+//! | [`decal`] | slope S of surface markings | marking pixels buried, and shown through what hides them |
 //! | [`flip`], [`psnr`] | - | how different two pictures look, and are |
 
 pub mod bypass;
 pub mod card;
 pub mod coordinates;
 pub mod coverage;
+pub mod decal;
 pub mod drift;
 pub mod filter;
 pub mod flip;

@@ -4,14 +4,17 @@
 //!   tie open and only asks that a shared edge be drawn once).
 //! * [`mod@line`]: the diamond-exit rule (OpenGL 4.6 core profile, section 14.5.1, "Basic Line Segment Rasterization").
 //! * A point draws the pixel whose half-open square holds it.
+//! * [`rows`]: the same pixels as runs of rows, for whole pictures.
 //! * [`area`]: how much of a pixel a triangle covers, for studies of accuracy.
 
 pub mod area;
 pub mod line;
+pub mod rows;
 pub mod triangle;
 
 pub use area::{half_plane_area, pixel_area};
 pub use line::line_covers;
+pub use rows::Rows;
 pub use triangle::{Outline, triangle_covers, triangle_covers_at};
 
 use super::{Primitive, Vertex};

@@ -6,15 +6,16 @@
 //! Multisampling)". Either winding is drawn; a triangle of area 0 covers nothing.
 
 use super::super::Vertex;
+use std::ops::Range;
 
 /// A line through two vertices as `e(p) = a x + b y + c`, positive inside; units u for x and y, u^2 for e.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
-    a: i128,
+    pub(super) a: i128,
     b: i128,
     c: i128,
     /// Left or top: its own points are inside.
-    closed: bool,
+    pub(super) closed: bool,
 }
 
 impl Edge {
@@ -30,7 +31,7 @@ impl Edge {
     }
 
     /// e at `(x / scale, y / scale)`, times `scale`.
-    fn at(&self, x: i128, y: i128, scale: i128) -> i128 {
+    pub(super) fn at(&self, x: i128, y: i128, scale: i128) -> i128 {
         self.a * x + self.b * y + self.c * scale
     }
 
@@ -52,7 +53,7 @@ pub fn twice_area(triangle: &[Vertex; 3]) -> i128 {
 }
 
 /// The three edges with the inside on their positive sides; `None` for area 0.
-fn edges(triangle: &[Vertex; 3]) -> Option<[Edge; 3]> {
+pub(super) fn edges(triangle: &[Vertex; 3]) -> Option<[Edge; 3]> {
     let [a, b, c] = match twice_area(triangle).signum() {
         1 => *triangle,
         -1 => [triangle[0], triangle[2], triangle[1]],
@@ -86,6 +87,13 @@ impl Outline {
     #[must_use]
     pub fn new(triangle: &[Vertex; 3]) -> Option<Self> {
         edges(triangle).map(Self)
+    }
+
+    /// The columns, of those given, at which a sample of row `j` is covered that lies `at` in 1/256 pixel from the
+    /// pixel's upper left corner.
+    #[must_use]
+    pub fn run(&self, j: u32, at: [u32; 2], columns: &Range<u32>) -> Range<u32> {
+        super::rows::run(&self.0, j, at, columns)
     }
 
     /// Whether the point `(x, y)`, in u, is covered.

@@ -137,16 +137,38 @@ pub(super) fn mean(samples: &[&Colour], resolve: Resolve) -> [Level; 4] {
     {
         return first.map(Level::exactly);
     }
-    let levels: Vec<[Exact; 4]> = samples.iter().map(|colour| colour.levels()).collect();
-    let on_values = |channel: usize| mean_of_levels(levels.iter().map(|levels| &levels[channel]));
+    let on_values = means_on_values(samples);
+    if resolve == Resolve::Values {
+        return on_values;
+    }
+    let colours: Vec<[f64; 3]> = samples.iter().map(|colour| colour.light()).collect();
     let in_light = |channel: usize| {
-        let sum: f64 = samples.iter().map(|colour| colour.light()[channel]).sum();
+        let sum: f64 = colours.iter().map(|light| light[channel]).sum();
         let level = level_of(sum / samples.len() as f64);
         let (low, high) = (level - 1.0 / CLOSE as f64, level + 1.0 / CLOSE as f64);
         let [low, high] = [low, high].map(|level| (level + 0.5).floor().clamp(0.0, 255.0) as u8);
         Level { low, high }
     };
-    [0, 1, 2, 3].map(|c| if resolve == Resolve::Linear && c < 3 { in_light(c) } else { on_values(c) })
+    [in_light(0), in_light(1), in_light(2), on_values[3]]
+}
+
+/// The means of the frame's values. Without layers they are sums of small integers.
+fn means_on_values(samples: &[&Colour]) -> [Level; 4] {
+    let mut sums = [0_u32; 4];
+    for colour in samples {
+        let Colour::Plain(levels) = colour else { return means_of_layers(samples) };
+        for (sum, &level) in sums.iter_mut().zip(levels) {
+            *sum += u32::from(level);
+        }
+    }
+    let count = samples.len() as u32;
+    sums.map(|sum| Level::exactly(((2 * sum + count) / (2 * count)) as u8))
+}
+
+/// The same by definition, in integers of any size.
+fn means_of_layers(samples: &[&Colour]) -> [Level; 4] {
+    let levels: Vec<[Exact; 4]> = samples.iter().map(|colour| colour.levels()).collect();
+    [0, 1, 2, 3].map(|channel: usize| mean_of_levels(levels.iter().map(|levels| &levels[channel])))
 }
 
 fn mean_of_levels<'a>(levels: impl ExactSizeIterator<Item = &'a Exact> + Clone) -> Level {
@@ -178,6 +200,19 @@ mod tests {
         assert_eq!(plain(&[0, 0, 0, 1], Resolve::Values), Level::exactly(0));
         assert_eq!(plain(&[0, 255], Resolve::Values), Level::exactly(128));
         assert_eq!(plain(&[254, 255], Resolve::Values), Level::exactly(255));
+    }
+
+    #[test]
+    fn mean_of_stored_levels_equals_that_of_integers_of_any_size() {
+        let colours: Vec<Colour> =
+            (0..997_u32).map(|k| Colour::Plain((k * k).wrapping_mul(2_654_435_761).to_le_bytes())).collect();
+        for count in [1, 2, 16, 32, 64] {
+            for samples in colours.chunks_exact(count) {
+                let samples: Vec<&Colour> = samples.iter().collect();
+
+                assert_eq!(mean(&samples, Resolve::Values), means_of_layers(&samples));
+            }
+        }
     }
 
     #[test]

@@ -7,11 +7,15 @@
 //! are *layers*: they wait until the pixel is composed ([`compose`]), at the end or at a clear of depths alone;
 //! what is opaque and has no depth test takes the samples it covers from the layers before it.
 //!
+//! [`Supersampled::draw_plain`] is that in so many words; [`Supersampled::draw`] does the same by runs of rows, and tests
+//! hold it to that.
+//!
 //! Nothing is ordered, merged, packed or skipped here, and no pixel is treated unlike another. Colours are flat: that of
 //! a primitive's first vertex.
 //!
 //! Beside its samples a pixel has the depth that the hidden-surface path keeps, one at the centre, by the same rules.
 
+mod bands;
 pub mod compose;
 mod faces;
 
@@ -104,6 +108,18 @@ impl Pixel {
         }
     }
 
+    /// Draws a fragment, or keeps it for later if it is translucent.
+    fn take(&mut self, fragment: &Fragment, colour: [u8; 4], brush: &Brush) {
+        match colour[3] {
+            0 if brush.blend => {}
+            1..=254 if brush.blend => {
+                let depths = fragment.depths.clone();
+                self.layers.push(Layer { depths, function: brush.test.function, colour });
+            }
+            _ => self.put(fragment, colour, &brush.test),
+        }
+    }
+
     /// Composes the layers with what is behind them.
     fn compose(&mut self) {
         for (place, sample) in self.samples.iter_mut().enumerate() {
@@ -177,6 +193,12 @@ impl Supersampled {
 
     /// Draws primitives in order.
     pub fn draw(&mut self, primitives: &[Primitive], brush: &Brush) {
+        let target = bands::Target { size: [self.width, self.height], format: self.format, positions: &self.positions };
+        target.draw(&mut self.pixels, primitives, brush);
+    }
+
+    /// [`Supersampled::draw`] by definition: primitive by primitive, pixel by pixel, sample by sample.
+    pub fn draw_plain(&mut self, primitives: &[Primitive], brush: &Brush) {
         for primitive in primitives {
             if brush.anti_alias {
                 for face in faces(primitive, brush.line_width, brush.point_size) {
@@ -207,7 +229,7 @@ impl Supersampled {
                 outline.covers(x, y).then(|| plane.stored_in(i, j, at))
             };
             let depths = self.positions.iter().map(|&at| depth(at)).collect();
-            self.fragment([i as u32, j as u32], Fragment { depths, centre: depth([128, 128]) }, colour, brush);
+            self.fragment([i as u32, j as u32], &Fragment { depths, centre: depth([128, 128]) }, colour, brush);
         }
     }
 
@@ -218,22 +240,14 @@ impl Supersampled {
         for_each_pixel(primitive, self.width, self.height, |i, j| {
             let depth = Some(plane.stored(i as i32, j as i32));
             let fragment = Fragment { depths: vec![depth; self.positions.len()], centre: depth };
-            self.fragment([i, j], fragment, colour, brush);
+            self.fragment([i, j], &fragment, colour, brush);
         });
     }
 
-    fn fragment(&mut self, [i, j]: [u32; 2], fragment: Fragment, colour: [u8; 4], brush: &Brush) {
+    fn fragment(&mut self, [i, j]: [u32; 2], fragment: &Fragment, colour: [u8; 4], brush: &Brush) {
         let [left, top, right, bottom] = brush.test.scissor;
-        if !(left..right).contains(&i) || !(top..bottom).contains(&j) {
-            return;
-        }
-        let pixel = &mut self.pixels[(j * self.width + i) as usize];
-        match colour[3] {
-            0 if brush.blend => {}
-            1..=254 if brush.blend => {
-                pixel.layers.push(Layer { depths: fragment.depths, function: brush.test.function, colour });
-            }
-            _ => pixel.put(&fragment, colour, &brush.test),
+        if (left..right).contains(&i) && (top..bottom).contains(&j) {
+            self.pixels[(j * self.width + i) as usize].take(fragment, colour, brush);
         }
     }
 
@@ -244,7 +258,14 @@ impl Supersampled {
             pixel.compose();
             compose::mean(&pixel.samples.iter().map(|sample| &sample.colour).collect::<Vec<_>>(), resolve)
         };
-        self.pixels.iter_mut().map(resolved).collect()
+        let mut picture = vec![[Level::exactly(0); 4]; self.pixels.len()];
+        let size = (super::bands::ROWS * self.width).max(1) as usize;
+        let work = (self.pixels.len() * self.positions.len()) as u64;
+        let bands = self.pixels.chunks_mut(size).zip(picture.chunks_mut(size));
+        super::bands::each(bands, work, |(pixels, levels)| {
+            pixels.iter_mut().zip(levels).for_each(|(pixel, levels)| *levels = resolved(pixel));
+        });
+        picture
     }
 
     /// The depths at the pixels' centres, as the hidden-surface path keeps them.

@@ -1,6 +1,8 @@
 //! Pictures that can be worked out by hand.
 
 use super::*;
+use crate::harness::scenes;
+use proptest::prelude::*;
 
 const GRIDS: [[u32; 2]; 3] = [[4, 4], [8, 4], [8, 8]];
 const ALL: Area = [0, 0, 99, 99];
@@ -213,4 +215,41 @@ fn end_in_linear_light_is_brighter() {
     target.draw(&wall(128, 20, [255; 4]), &Brush::masked(LESS));
 
     assert_eq!(target.end()[0], [188, 188, 188, 128].map(Level::exactly));
+}
+
+proptest! {
+    #[test]
+    fn draw_any_scene_equals_the_plain_form(
+        pieces in scenes::scene([30, 19], 24, 20), grid in 0usize..3, f in 0u32..4, function in 0usize..9, masked in any::<bool>(),
+        blend in any::<bool>(), widths in (1u32..700, 1u32..700), scissor in (0u32..9, 0u32..9, 9u32..40, 9u32..40),
+    ) {
+        let test = Test {
+            function: DepthFunction::ALL.get(function).copied(),
+            write: true,
+            scissor: [scissor.0, scissor.1, scissor.2, scissor.3],
+        };
+        let brush = Brush { test, anti_alias: masked, blend, line_width: widths.0, point_size: widths.1 };
+        // Colours of which some are translucent; drawn over and over, so that threads have work.
+        let scene: Vec<Primitive> = (0..3).flat_map(|_| scenes::primitives(&pieces)).enumerate().map(|(k, primitive)| {
+            let colour = (k as u32).wrapping_mul(0x0700_2B0D).to_le_bytes();
+            match primitive {
+                Primitive::Triangle(v) => Primitive::Triangle(v.map(|v| v.coloured(colour))),
+                Primitive::Line(v) => Primitive::Line(v.map(|v| v.coloured(colour))),
+                Primitive::Point(v) => Primitive::Point(v.coloured(colour)),
+            }
+        }).collect();
+        let format = DepthFormat { bits: 24, fraction: f * 8 };
+        let mut fast = Supersampled::new([30, 19], GRIDS[grid], format, Resolve::Values);
+        let mut plain = fast.clone();
+
+        fast.draw(&scene, &brush);
+        plain.draw_plain(&scene, &brush);
+
+        prop_assert_eq!(fast.centre_depths(), plain.centre_depths());
+        for pixel in 0..30 * 19 {
+            let [i, j] = [pixel % 30, pixel / 30];
+            prop_assert_eq!(fast.sample_depths(i, j), plain.sample_depths(i, j), "({}, {})", i, j);
+        }
+        prop_assert_eq!(fast.end(), plain.end());
+    }
 }
