@@ -15,6 +15,7 @@
 
 mod axes;
 mod context;
+mod decal;
 mod json;
 mod model;
 mod page;
@@ -53,6 +54,7 @@ pub const PARTS: &[(&str, &str, Measure)] = &[
     ("shading", "shading: flat, Gouraud, per pixel", axes::shading::section),
     ("za-prediction", "Za prediction: blocks not bypassed", axes::bypass::section),
     ("fidelity", "simulation: functional or clocked", axes::fidelity::section),
+    ("decal", "surface markings: slope S", decal::section),
 ];
 
 /// Measures the parts with these names; all of them if there is none. `tell` is called with what is being measured,

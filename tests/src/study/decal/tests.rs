@@ -48,21 +48,35 @@ fn constant_offset_that_buries_as_little_shows_more_through() {
 }
 
 #[test]
-fn sloped_offset_that_buries_as_little_shows_more_through_at_the_limit() {
+fn usual_offset_shows_more_through_at_the_limit_in_a_parallel_projection() {
     let mut desk = Desk::new();
-    for projection in Projection::ALL {
-        let subjects = of([open(projection, LIMIT, Extent::Many), covered(projection, LIMIT, Extent::Few)].concat());
-        // In perspective a plane is steep only where it is far: the sheets that matter are those of its steep part.
-        let decal = counts(&subjects, &mut desk, Cure::Decal(LIMIT));
+    let projection = Projection::Orthographic;
+    let subjects = of([open(projection, LIMIT, Extent::Many), covered(projection, LIMIT, Extent::Few)].concat());
+    let decal = counts(&subjects, &mut desk, Cure::Decal(LIMIT));
 
-        let offsets = [0.5, 0.6, 0.7, 0.8, 0.9, 1.0]
-            .map(|factor| counts(&subjects, &mut desk, Cure::Offset { factor, units: 1.0 }));
-        let enough = offsets.into_iter().find(|found| found.buried_within <= decal.buried_within).expect("enough");
+    // The least slope-scaled offset that buries no more, and the usual one. On flatter surfaces, which an offset follows
+    // and a decal does not, it is the other way round: the report says where.
+    let offsets =
+        [0.5, 0.6, 0.7, 0.8, 0.9, 1.0].map(|factor| counts(&subjects, &mut desk, Cure::Offset { factor, units: 1.0 }));
+    let usual = offsets[5];
+    let enough = offsets.into_iter().find(|found| found.buried <= decal.buried).expect("enough");
 
-        println!("{projection:?}: {decal:?} {enough:?}");
-        if projection == Projection::Orthographic {
-            assert!(decal.shown <= enough.shown, "{projection:?}: {decal:?} {enough:?}");
-        }
+    assert!(decal.shown <= enough.shown, "{decal:?} {enough:?}");
+    assert!(decal.shown * 4 < usual.shown * 3, "{decal:?} {usual:?}");
+}
+
+#[test]
+fn decal_of_the_planes_own_slope_shows_no_more_through_than_the_usual_offset() {
+    let mut desk = Desk::new();
+    for tilt in [0.0, 1.0, 4.0, 8.0, 16.0] {
+        let subjects = of(covered(Projection::Orthographic, tilt, Extent::Few));
+
+        // Points need |dz/dx| + |dz/dy|, which is 1.384 tilts where a plane falls away to 33 degrees.
+        let decal = counts(&subjects, &mut desk, Cure::Decal(1.384 * tilt));
+        let usual = counts(&subjects, &mut desk, Cure::Offset { factor: 1.0, units: 1.0 });
+
+        assert_eq!((decal.buried - decal.ties, usual.buried), (0, 0), "tilt {tilt}: {decal:?} {usual:?}");
+        assert!(decal.shown <= usual.shown, "tilt {tilt}: {decal:?} {usual:?}");
     }
 }
 
