@@ -69,7 +69,8 @@ fn main() -> ExitCode {
         // 64 samples of every fragment of triangles as large as the target: too much.
         if fragments < 100_000_000 {
             for grid in [[4, 4], [8, 8]] {
-                let test = Test { function: Some(function), write: true, scissor: [0, 0, SIZE[0], SIZE[1]] };
+                let test =
+                    Test { function: Some(function), write: true, scissor: [0, 0, SIZE[0], SIZE[1]], stencil: None };
                 let mut target = Supersampled::new(SIZE, grid, format, Resolve::Values);
                 let (_, s) = seconds(|| {
                     target.draw(&scene, &Brush::masked(test));

@@ -226,6 +226,7 @@ proptest! {
         let test = Test {
             function: DepthFunction::ALL.get(function).copied(),
             write: true,
+            stencil: None,
             scissor: [scissor.0, scissor.1, scissor.2, scissor.3],
         };
         let brush = Brush { test, anti_alias: masked, blend, line_width: widths.0, point_size: widths.1 };
