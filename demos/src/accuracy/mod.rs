@@ -110,7 +110,7 @@ fn headlines(sections: &[Section]) -> Vec<String> {
             always.retain(|setting| other.contains(setting));
         }
         if !sweeps.iter().all(verdict::is_free) && !always.is_empty() {
-            lost.push(format!("{} ({})", always.join(", "), name(section).to_lowercase()));
+            lost.push(format!("{} ({})", always.join(" and "), name(section).to_lowercase()));
         }
     }
     let noise = noise(sections);
