@@ -12,9 +12,10 @@ use crate::{Antialias, Driver, DriverError, TargetOptions};
 /// Settings of accuracy that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Preset {
-    /// The cheapest picture: one sample a pixel, depths of 16 bits with 16 fraction bits, vertices on 1/16 pixel.
+    /// The cheapest picture: one sample a pixel. Depths of 24 bits with 24 fraction bits and vertices on 1/256 pixel, since
+    /// coarser ones cost the card as many clocks.
     Draft,
-    /// For looking at: 4x4 samples ordered by the mask search, depths of 24 bits with 24 fraction bits, 1/256 pixel.
+    /// For looking at: 4x4 samples, each with a depth of its own, of 24 bits with 24 fraction bits, 1/256 pixel.
     Standard,
     /// All the card has: 8x8 samples, each with a depth of its own, of 31 bits with 24 fraction bits, 1/256 pixel.
     Exact,
@@ -39,7 +40,7 @@ impl Preset {
     pub fn antialias(self) -> Antialias {
         let (grid, depth) = match self {
             Preset::Draft => (SubpixelGrid::Off, SubpixelDepth::Centre),
-            Preset::Standard => (SubpixelGrid::Grid4x4, SubpixelDepth::Search),
+            Preset::Standard => (SubpixelGrid::Grid4x4, SubpixelDepth::Exhaustive),
             Preset::Exact => (SubpixelGrid::Grid8x8, SubpixelDepth::Exhaustive),
         };
         Antialias { grid, depth, ..Antialias::default() }
@@ -49,8 +50,7 @@ impl Preset {
     #[must_use]
     pub fn depth(self) -> DepthFormat {
         let [bits, fraction] = match self {
-            Preset::Draft => [16, 16],
-            Preset::Standard => [24, 24],
+            Preset::Draft | Preset::Standard => [24, 24],
             Preset::Exact => [31, 24],
         };
         DepthFormat::new(bits, fraction).unwrap_or_default()
@@ -60,8 +60,7 @@ impl Preset {
     #[must_use]
     pub const fn subpixel_bits(self) -> u32 {
         match self {
-            Preset::Draft => 4,
-            Preset::Standard | Preset::Exact => 8,
+            Preset::Draft | Preset::Standard | Preset::Exact => 8,
         }
     }
 }
@@ -104,7 +103,7 @@ mod tests {
     #[test]
     fn presets_have_formats_that_there_are_and_names_of_their_own() {
         let formats: Vec<_> = Preset::ALL.iter().map(|p| (p.name(), p.depth().bits(), p.depth().fraction())).collect();
-        assert_eq!(formats, [("draft", 16, 16), ("standard", 24, 24), ("exact", 31, 24)]);
+        assert_eq!(formats, [("draft", 24, 24), ("standard", 24, 24), ("exact", 31, 24)]);
         assert_eq!(TargetOptions::with_preset(8, 8, Preset::Exact).depth, Some(Preset::Exact.depth()));
     }
 }

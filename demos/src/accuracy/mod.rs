@@ -88,8 +88,10 @@ fn headlines(sections: &[Section]) -> Vec<String> {
     let mut all: Vec<String> = sections
         .iter()
         .filter_map(|section| match section.name {
-            "combined" | "grid" => section.findings.first().cloned(),
-            "presets" | "subpixel-depth" => section.findings.last().cloned(),
+            "combined" => section.findings.first().cloned(),
+            "grid" => section.findings.first().map(|line| format!("Samples of a pixel: {line}")),
+            "presets" => section.findings.last().map(|line| format!("Preset {line}")),
+            "subpixel-depth" => section.findings.last().cloned(),
             _ => None,
         })
         .collect();
@@ -110,7 +112,7 @@ fn headlines(sections: &[Section]) -> Vec<String> {
             always.retain(|setting| other.contains(setting));
         }
         if !sweeps.iter().all(verdict::is_free) && !always.is_empty() {
-            lost.push(format!("{} ({})", always.join(", "), name(section).to_lowercase()));
+            lost.push(format!("{} ({})", always.join(" and "), name(section).to_lowercase()));
         }
     }
     let noise = noise(sections);

@@ -61,7 +61,7 @@ pub fn sentences(sweep: &Sweep) -> Vec<String> {
         } else {
             format!("so there is no reason for less than {}", exact.0.setting)
         };
-        all.push(format!("On {scene} every setting takes the same clocks: this accuracy is free, {what}."));
+        all.push(format!("Every setting takes the same clocks: this accuracy is free, {what} ({scene})."));
         return all;
     }
     if exact.0.setting != cheap.0.setting {
@@ -71,7 +71,7 @@ pub fn sentences(sweep: &Sweep) -> Vec<String> {
         };
         let clocks = figure(exact.2 / cheap.2);
         all.push(format!(
-            "On {scene}, {} in place of {} {error} for {clocks} times the clocks.",
+            "{} instead of {} {error} for {clocks} times the clocks ({scene}).",
             exact.0.setting, cheap.0.setting
         ));
     }
@@ -90,7 +90,7 @@ pub fn sentences(sweep: &Sweep) -> Vec<String> {
         } else {
             format!("for {} times its clocks", figure(clocks))
         };
-        all.push(format!("On {scene}, {} is never worth it: {} {error}, {price}.", loser.setting, winner.setting));
+        all.push(format!("{} is never worth it: {} {error}, {price} ({scene}).", loser.setting, winner.setting));
     }
     all
 }
@@ -154,13 +154,13 @@ mod tests {
         assert_eq!(
             free,
             [
-                "On tests every setting takes the same clocks: this accuracy is free, so there is no reason for less than 16."
+                "Every setting takes the same clocks: this accuracy is free, so there is no reason for less than 16 (tests)."
             ]
         );
         let found = sentences(&sweep(vec![point("a", 8.0, 1.0), point("b", 4.0, 3.0), point("c", 2.0, 2.0)]));
         assert_eq!(found.len(), 2);
-        assert_eq!(found[0], "On tests, c in place of a divides the error by 4 for 2 times the clocks.");
-        assert!(found[1].starts_with("On tests, b is never worth it: c has 2 px"), "{}", found[1]);
+        assert_eq!(found[0], "c instead of a divides the error by 4 for 2 times the clocks (tests).");
+        assert!(found[1].starts_with("b is never worth it: c has 2 px"), "{}", found[1]);
     }
 
     #[test]

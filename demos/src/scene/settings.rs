@@ -173,11 +173,11 @@ mod tests {
         let own = plain.or(scene);
         assert_eq!((own.antialias, own.depth_bits), (Some(SubpixelGrid::Grid8x4), Some(31)));
         // A preset of the command line goes before all that the scene says of accuracy.
-        let asked = CardSettings { preset: Some(Preset::Draft), depth_bits: Some(24), ..plain };
+        let asked = CardSettings { preset: Some(Preset::Draft), depth_bits: Some(16), ..plain };
         let both = asked.or(scene);
         assert_eq!(
             (both.antialias, both.depth_bits, both.depth_fraction_bits),
-            (Some(SubpixelGrid::Off), Some(24), Some(16))
+            (Some(SubpixelGrid::Off), Some(16), Some(24))
         );
         assert_eq!(both.preset, Some(Preset::Draft));
     }

@@ -36,9 +36,9 @@ impl Way {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match (self.filter, self.levels) {
-            (Filter::Nearest, false) => "nearest, level 0",
+            (Filter::Nearest, false) => "nearest at level 0",
             (Filter::Nearest, true) => "nearest",
-            (Filter::Bilinear, false) => "bilinear, level 0",
+            (Filter::Bilinear, false) => "bilinear at level 0",
             (Filter::Bilinear, true) => "bilinear",
             (Filter::Trilinear, _) => "trilinear",
         }

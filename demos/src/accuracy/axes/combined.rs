@@ -15,7 +15,8 @@ use crate::error::Result;
 /// Every combination that differs in what is drawn: without a grid there is no order.
 fn combinations() -> Vec<(String, Setting)> {
     let mut all = Vec::new();
-    for (grid, grid_name) in [(Grid::Off, "1"), (Grid::Grid4x4, "4x4"), (Grid::Grid8x4, "8x4"), (Grid::Grid8x8, "8x8")]
+    for (grid, grid_name) in
+        [(Grid::Off, "1 sample"), (Grid::Grid4x4, "4x4"), (Grid::Grid8x4, "8x4"), (Grid::Grid8x8, "8x8")]
     {
         for (order, order_name) in Order::ALL.into_iter().zip(["centre", "search", "exhaustive"]) {
             if grid == Grid::Off && order != Order::Centre {

@@ -97,12 +97,16 @@ pub fn section(context: &mut Context<'_>) -> Result<Section> {
             _ => None,
         })
     };
+    let share = |setting: usize| match worst(setting).fold(0.0, f64::max) {
+        0.0 => "in none".to_owned(),
+        rate => format!("in up to {} %", figure(rate)),
+    };
     section.findings.push(format!(
-        "Where triangles cut each other inside a pixel, centre is wrong in up to {} %, search in up to {} % and exhaustive in up to {} % \
-         of the pixels.",
-        figure(worst(0).fold(0.0, f64::max)),
-        figure(worst(1).fold(0.0, f64::max)),
-        figure(worst(2).fold(0.0, f64::max))
+        "Where triangles cut each other inside a pixel, one depth at the centre gets the pixel wrong {}, the mask search {}, a depth for \
+         each sample {}.",
+        share(0),
+        share(1),
+        share(2)
     ));
     section.tables.push(table);
     Ok(section)

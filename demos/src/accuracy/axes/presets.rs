@@ -28,7 +28,7 @@ pub struct Bounds {
 /// The promises; tests hold them.
 pub const BOUNDS: [Bounds; 3] = [
     Bounds { preset: Preset::Draft, mean_error: 40.0, clocks: 1.0 },
-    Bounds { preset: Preset::Standard, mean_error: 5.5, clocks: 3.2 },
+    Bounds { preset: Preset::Standard, mean_error: 5.5, clocks: 2.6 },
     Bounds { preset: Preset::Exact, mean_error: 2.0, clocks: 7.0 },
 ];
 

@@ -121,11 +121,13 @@ pub fn of_sweep_plots(sweep: &Sweep) -> Vec<Plot> {
         let positive = || errors.iter().copied().filter(|error| *error > 0.0);
         let (least, most) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
         let axis = if most > 4.0 * least { Axis::logarithmic } else { Axis::linear };
+        // A line through many settings that have no one order is a tangle.
+        let kind = if points.len() > 6 { Kind::Marks } else { Kind::Line };
         (points.len() > 1).then(|| Plot {
             title: format!("{}: error against {what}", sweep.scene),
             x: Axis::linear(label),
             y: axis(y.as_str()),
-            series: vec![Series { name: String::new(), points, labels, kind: Kind::Line }],
+            series: vec![Series { name: String::new(), points, labels, kind }],
         })
     };
     let clocks = of("clocks", "clocks of the card for a pixel", |point| point.price.clocks);
