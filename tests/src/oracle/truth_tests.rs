@@ -78,10 +78,14 @@ fn judge_false_winners_are_measured() {
     assert_eq!(verdict.first_wrong, Some((0, 1)));
 }
 
-/// Everything of a picture, in a form that can be compared.
-fn parts(image: &TrueImage) -> (&[Option<u32>], Vec<Fraction>, &[Option<u32>], &[f64], &[bool]) {
+/// Winner, depth, runner-up, gap, ambiguous.
+type Parts = (Option<u32>, Fraction, Option<u32>, f64, bool);
+
+/// Everything of a picture, pixel by pixel, in a form that can be compared.
+fn parts(image: &TrueImage) -> Vec<Parts> {
     let TrueImage { winner, depth, runner_up, gap_in_steps, ambiguous, .. } = image;
-    (winner, depth.clone(), runner_up, gap_in_steps, ambiguous)
+    let pixel = |k: usize| (winner[k], depth[k], runner_up[k], gap_in_steps[k], ambiguous[k]);
+    (0..winner.len()).map(pixel).collect()
 }
 
 #[test]
