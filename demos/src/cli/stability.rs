@@ -155,7 +155,7 @@ fn text(cases: &[Case], rows: &[Row]) -> String {
     let failed: Vec<String> =
         rows.iter().filter(|row| !row.passed).map(|row| format!("{} ({})", row.case, row.name)).collect();
     let end = if failed.is_empty() { String::new() } else { format!(": {}", failed.join(", ")) };
-    text + &format!("{} cases, {} hold, {} failed{end}\n", rows.len(), rows.len() - failed.len(), failed.len())
+    text + &format!("{} of {} hold, {} failed{end}\n", rows.len() - failed.len(), rows.len(), failed.len())
 }
 
 /// Words under a name, in lines of at most [`WIDTH`] columns if they can be broken.
@@ -229,7 +229,7 @@ mod tests {
 
         assert_eq!(rows.iter().map(|row| row.passed).collect::<Vec<bool>>(), [true, false, true]);
         assert_eq!(rows[1].measured, "panicked: no such luck");
-        assert!(text(&cases, &rows).ends_with("3 cases, 2 hold, 1 failed: 2 (made_up)\n"));
+        assert!(text(&cases, &rows).ends_with("2 of 3 hold, 1 failed: 2 (made_up)\n"));
         assert_eq!(json(&cases, &rows)["failed"], 1);
         assert_eq!(json(&cases, &rows)["cases"][1]["verdict"], "failed");
     }
