@@ -3,7 +3,7 @@
 //!
 //! [`draw_plain`] says it in so many words, pixel by pixel. [`draw`] is the same faster, and tests hold it to that: rows
 //! are exact runs ([`super::raster::rows`]), depths are summed along them (in 64 bits where both ends of the run say that
-//! these are enough), and bands of rows go to threads ([`super::bands`]).
+//! these are enough), and bands of rows go to threads (`bands`).
 //!
 //! Nothing is said about colours here: the winner's index tells whose colour a pixel has ([`super::colour`]).
 

@@ -4,7 +4,7 @@
 //! step of each other the stored depths may tie or swap, so the pixel is *ambiguous*: the card's answer there is
 //! judged by how much depth it gave away ([`TrueImage::judge`]), not by identity.
 //!
-//! [`draw_true_plain`] says it in so many words; [`draw_true`] is the same faster ([`ranking`]).
+//! [`draw_true_plain`] says it in so many words; [`draw_true`] is the same faster (`ranking`).
 
 use std::cmp::Ordering;
 
