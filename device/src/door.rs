@@ -8,6 +8,7 @@ use crate::error::CardError;
 use crate::frontend::Frontend;
 use crate::frontend::ring::RingFetch;
 use crate::hidden::systolic::Waves;
+use crate::memory::MappedMemory;
 use crate::pipeline::{Kernel, Pipeline, PipelineOptions};
 use crate::probe::Probe;
 use crate::probe::account::Account;
@@ -106,6 +107,12 @@ impl Card {
     #[must_use]
     pub fn monitor(&self) -> Monitor {
         Monitor::new(Arc::clone(&self.backplane.cable))
+    }
+
+    /// Video memory as the host's own words, between two packets; the card waits for as long as the mapping lives.
+    #[must_use]
+    pub fn map(&self) -> MappedMemory {
+        MappedMemory::new(&self.backplane.memory)
     }
 
     /// Everything the card holds, between two packets. Work goes on afterwards.

@@ -111,6 +111,7 @@ pub mod effects {
 pub use bus::CardBus;
 pub use door::{Card, CardOptions};
 pub use error::CardError;
+pub use memory::MappedMemory;
 pub use pipeline::Kernel;
 pub use probe::account::Clocks;
 pub use probe::snapshot::Snapshot;

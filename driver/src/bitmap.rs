@@ -205,11 +205,13 @@ impl<B: Bus> Driver<B> {
         Ok(Image { memory, pitch, width, height, format })
     }
 
-    /// Gives an image's memory back; it is used again when the card has executed what was encoded before.
+    /// Gives an image's memory back; it is used again when the card has executed what was encoded before. If the image is
+    /// shown, the screen goes dark.
     ///
     /// # Errors
     /// As [`Driver::free`].
     pub fn destroy_image(&mut self, image: Image) -> Result<(), DriverError> {
+        self.darken(&image.memory)?;
         self.free(image.memory)
     }
 

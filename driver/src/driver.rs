@@ -59,6 +59,7 @@ pub struct Driver<B: Bus> {
     pub(crate) scene_memory: Vec<Allocation>,
     pub(crate) capture_area: Option<Allocation>,
     pub(crate) shown: Option<(u32, u32)>,
+    pub(crate) cursor_area: Option<Allocation>,
     pub(crate) probe_area: Option<Allocation>,
     /// The books of Za RAM.
     pub(crate) za_ram: VideoMemory,
@@ -124,6 +125,7 @@ impl<B: Bus> Driver<B> {
             scene_memory: Vec::new(),
             capture_area: None,
             shown: None,
+            cursor_area: None,
             probe_area: None,
             za_ram: VideoMemory::new(info.za_ram),
             memory,

@@ -55,6 +55,7 @@ mod antialias;
 mod bitmap;
 pub mod bus;
 mod capture;
+mod display;
 mod draw;
 mod driver;
 mod effects;

@@ -118,7 +118,7 @@ pub(crate) const fn pitch_of(bytes: u32) -> u32 {
 }
 
 /// Width and height as TARGET_SIZE and SCANOUT_SIZE hold them.
-const fn size_word(width: u32, height: u32) -> u32 {
+pub(crate) const fn size_word(width: u32, height: u32) -> u32 {
     width | height << 16
 }
 

@@ -142,7 +142,12 @@ const PARTS: [Part; 13] = [
         name: "scanout",
         unit: Units::SCANOUT,
         clocks: Some(Counter::CyclesScanout),
-        events: &[Counter::ScanoutFrames, Counter::ScanoutPixels, Counter::ScanoutBackgroundBlocks],
+        events: &[
+            Counter::ScanoutFrames,
+            Counter::ScanoutPixels,
+            Counter::ScanoutBackgroundBlocks,
+            Counter::ScanoutCursorPixels,
+        ],
         bytes: &[],
     },
     Part { name: "probe", unit: Units::PROBE, clocks: None, events: &[Counter::ProbeFragments], bytes: &[] },

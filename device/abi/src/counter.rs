@@ -112,4 +112,5 @@ counters! {
     StencilTested "stencil.tested" "Fragments whose pixel's stencil value was read and compared.",
     StencilFailed "stencil.failed" "Fragments among them that failed the stencil test.",
     StencilShadowed "stencil.shadowed" "Pixels that the shadow bit darkened.",
+    ScanoutCursorPixels "scanout.cursor_pixels" "Pixels of the cursor put out over the frame.",
 }

@@ -32,6 +32,9 @@ macro_rules! enumeration {
     };
 }
 
+/// Columns and rows of the cursor's picture.
+pub const CURSOR_SIDE: u32 = 64;
+
 enumeration! {
     /// Format of a pixel in a frame buffer.
     PixelFormat {

@@ -483,6 +483,18 @@ registers! {
     /// Vertical blanks since reset (modulo 2^32).
     FrameCount "FRAME_COUNT" @ 0x0698 [1] ReadOnly reset &[0], writable 0, w1c 0, {}
 
+    /// Cursor: a picture that scan-out puts over the frame shown. It stands in no frame buffer and changes none.
+    CursorControl "CURSOR_CONTROL" @ 0x06A0 [1] ReadWrite reset &[0], writable 1, w1c 0, {
+        0:0 "enable" "1 shows the cursor";
+    }
+    /// First byte of the cursor's picture, a multiple of 64: 64 x 64 ARGB8888 pixels in dense rows, colours multiplied by their alpha.
+    CursorBase "CURSOR_BASE" @ 0x06A4 [1] ReadWrite reset &[0], writable 0xFFFF_FFC0, w1c 0, {}
+    /// Where the picture's first pixel lies on the frame shown; what lies outside the frame is not shown.
+    CursorPosition "CURSOR_POSITION" @ 0x06A8 [1] ReadWrite reset &[0], writable 0xFFFF_FFFF, w1c 0, {
+        31:16 "y" "pixels, two's complement";
+        15:0 "x" "pixels, two's complement";
+    }
+
     // What the last scene called for, and what it cost ---------------------------------------
     /// Effects called since begin scene; bits as in EFFECTS.
     EffectsCalled "EFFECTS_CALLED" @ 0x0700 [1] ReadOnly reset &[0], writable 0, w1c 0, {}

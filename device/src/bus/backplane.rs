@@ -9,7 +9,7 @@
 //! | [`Ring`] | driver (put), card (get) | a lock, held for a few loads |
 //! | [`Interrupts`] | card raises, driver acknowledges | atomic latches |
 //! | counters | card adds, driver reads and clears | a lock, held to add or read |
-//! | [`VideoMemory`] | both | a lock; the card holds it for one packet, a burst for one copy |
+//! | [`VideoMemory`] | both | a lock; the card holds it for one packet, a burst for one copy, a host's mapping while it is there |
 //! | FIFO | driver pushes, card takes | a bounded channel of the FIFO's depth |
 //!
 //! Lock order: video memory before any other; no thread holds two of the others.
@@ -55,7 +55,7 @@ pub(crate) struct Backplane {
     pub(crate) ring: Ring,
     pub(crate) fifo: FifoPort,
     pub(crate) control: Control,
-    pub(crate) memory: Mutex<VideoMemory>,
+    pub(crate) memory: Arc<Mutex<VideoMemory>>,
     /// Counters as the COUNTERS registers show them; the card adds what it has counted since
     /// before every fence, every interrupt and every rest.
     pub(crate) counters: Mutex<Account>,
@@ -83,7 +83,7 @@ impl Backplane {
             ring: Ring::default(),
             fifo,
             control,
-            memory: Mutex::new(VideoMemory::new(video_memory, za_ram)),
+            memory: Arc::new(Mutex::new(VideoMemory::new(video_memory, za_ram))),
             counters: Mutex::new(Account::default()),
             cable: Arc::new(Cable::default()),
             active: AtomicBool::new(true),

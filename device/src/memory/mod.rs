@@ -9,8 +9,10 @@
 //! Words are 32 bits; the first of two 16-bit pixels stands in a word's low half.
 
 pub(crate) mod areas;
+mod mapped;
 mod za_ram;
 
+pub use mapped::MappedMemory;
 pub(crate) use za_ram::ZaRam;
 
 use crate::probe::account::Account;
@@ -28,8 +30,8 @@ pub(crate) struct VideoMemory {
     areas: Areas,
     /// Counts changes that can be seen in the frame shown.
     generation: u64,
-    /// Words of the frame shown; host writes elsewhere cannot be seen.
-    watched: Range<usize>,
+    /// Words of the frame and of the cursor shown; host writes elsewhere cannot be seen.
+    watched: [Range<usize>; 2],
     /// Words whose contents the pipeline remembers.
     remembered: Range<usize>,
     /// Counts changes that others may have made there.
@@ -46,7 +48,7 @@ impl VideoMemory {
             za: ZaRam::new(za_ram),
             areas: Areas::default(),
             generation: 0,
-            watched: 0..0,
+            watched: [0..0, 0..0],
             remembered: 0..0,
             foreign: 0,
             texels: Vec::new(),
@@ -129,7 +131,7 @@ impl VideoMemory {
         let stored = self.words.get_mut(index..).unwrap_or_default();
         let count = stored.len().min(words.len());
         stored[..count].copy_from_slice(&words[..count]);
-        if index < self.watched.end && index + count > self.watched.start {
+        if self.watched.iter().any(|watched| index < watched.end && index + count > watched.start) {
             self.generation += 1;
         }
         if index < self.remembered.end && index + count > self.remembered.start {
@@ -178,8 +180,8 @@ impl VideoMemory {
         self.generation
     }
 
-    /// The frame shown lies in these words.
-    pub(crate) fn watch(&mut self, words: Range<usize>) {
+    /// The frame and the cursor shown lie in these words.
+    pub(crate) fn watch(&mut self, words: [Range<usize>; 2]) {
         self.watched = words;
     }
 }
@@ -208,7 +210,7 @@ mod tests {
     #[test]
     fn write_outside_the_frame_shown_is_no_change() {
         let mut memory = VideoMemory::new(4096, 0);
-        memory.watch(16..32);
+        memory.watch([16..32, 0..0]);
         memory.write(0, &[1; 16]);
         memory.write(32, &[1; 16]);
         assert_eq!(memory.generation(), 0);

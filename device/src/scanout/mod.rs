@@ -2,23 +2,25 @@
 //!
 //! Duties: makes vertical blanks, on demand (one for each PRESENT) or continuous (one every
 //! SCANOUT_PERIOD); shows the frame that the SCANOUT registers describe; writes a frame back.
-//! For blocks of the frame that are cleared in Za RAM only it puts the background out.
-//! Inputs: SCANOUT registers, PRESENT and WRITE_BACK from the firmware, the frame in video memory, Za words.
+//! For blocks of the frame that are cleared in Za RAM only it puts the background out; over all of it the [`cursor`].
+//! Inputs: SCANOUT and CURSOR registers, PRESENT and WRITE_BACK from the firmware, the frame in video memory, Za words.
 //! Outputs: frames on the display cable; FRAME_COUNT; the vertical blank interrupt; words in memory.
 //! Clocks (`cycles.scanout`): 1 for each pixel put out, at every vertical blank and every write back:
 //! the display takes one pixel a clock, and takes it whether or not anybody looks at the screen.
-//! So the account does not depend on who holds a monitor; only the host's work does.
+//! So the account does not depend on who holds a monitor; only the host's work does. A cursor: see [`cursor`].
 //!
 //! In continuous mode a blank that comes due during a long packet is late; blanks that were missed
 //! meanwhile are left out, not made up for.
 
 pub(crate) mod compose;
+mod cursor;
 pub(crate) mod monitor;
 
 use crate::bus::backplane::Backplane;
 use crate::memory::VideoMemory;
 use crate::probe::account::{Account, Clocks};
 use compose::{Cleared, compose};
+use cursor::Cursor;
 use monitor::Frame;
 use parking_lot::MutexGuard;
 use std::sync::Arc;
@@ -39,8 +41,8 @@ type Pixels = Arc<Vec<u32>>;
 pub(crate) struct Scanout {
     /// Blanks since power-on; the number of a frame. Not touched by a reset.
     blanks: u64,
-    /// What the frame on the cable was composed from: surface and generation of memory.
-    composed: Option<(Surface, u64)>,
+    /// What the frame on the cable was composed from: surface, cursor and generation of memory.
+    composed: Option<(Surface, Option<Cursor>, u64)>,
     /// Frames in the order of their use, the last composed at the end.
     kept: Vec<Pixels>,
     /// When the next blank comes, in continuous mode.
@@ -108,9 +110,10 @@ impl Scanout {
         self.blanks = self.blanks.saturating_add(1);
         let count = backplane.registers.get(Reg::FrameCount);
         if let Some(surface) = shown(backplane, memory) {
-            charge(account, &surface, &Cleared::of(memory, &surface));
+            let cursor = Cursor::shown(backplane, memory);
+            charge(account, &surface, &Cleared::of(memory, &surface), cursor.as_ref());
             if backplane.cable.is_watched() {
-                self.put_out(backplane, memory, surface);
+                self.put_out(backplane, memory, surface, cursor);
             }
         }
         backplane.publish(account);
@@ -119,19 +122,20 @@ impl Scanout {
     }
 
     /// Puts the frame on the cable; composes it only if something changed since it was composed last.
-    fn put_out(&mut self, backplane: &Backplane, memory: &mut VideoMemory, surface: Surface) {
+    fn put_out(&mut self, backplane: &Backplane, memory: &mut VideoMemory, surface: Surface, cursor: Option<Cursor>) {
         let fresh = backplane.cable.take_fresh();
-        let unchanged = self.composed == Some((surface, memory.generation()));
+        let unchanged = self.composed == Some((surface, cursor, memory.generation()));
         if unchanged && !fresh && self.next.is_some() {
             return;
         }
         if !unchanged || self.kept.is_empty() {
             let mut pixels = self.spare();
-            compose(memory.words(), &surface, &Cleared::of(memory, &surface), Arc::make_mut(&mut pixels));
+            picture(memory, &surface, cursor.as_ref(), Arc::make_mut(&mut pixels));
             self.kept.push(pixels);
             let first = (surface.base / 4) as usize;
-            memory.watch(first..first + (surface.pitch as usize / 4) * surface.height as usize);
-            self.composed = Some((surface, memory.generation()));
+            let frame = first..first + (surface.pitch as usize / 4) * surface.height as usize;
+            memory.watch([frame, cursor.map_or(0..0, |cursor| cursor.words())]);
+            self.composed = Some((surface, cursor, memory.generation()));
         }
         if let Some(pixels) = self.kept.last() {
             let pixels = Arc::clone(pixels);
@@ -165,9 +169,9 @@ impl Scanout {
         account: &mut Account,
     ) {
         let Some(surface) = shown(backplane, memory) else { return };
-        let cleared = Cleared::of(memory, &surface);
-        compose(memory.words(), &surface, &cleared, &mut self.scratch);
-        charge(account, &surface, &cleared);
+        let cursor = Cursor::shown(backplane, memory);
+        picture(memory, &surface, cursor.as_ref(), &mut self.scratch);
+        charge(account, &surface, &Cleared::of(memory, &surface), cursor.as_ref());
         let bytes = u64::from(destination)..u64::from(destination) + 4 * self.scratch.len() as u64;
         let room = memory.using(0..0, bytes, account).get_mut((destination / 4) as usize..).unwrap_or_default();
         if let Some(room) = room.get_mut(..self.scratch.len()) {
@@ -197,13 +201,23 @@ fn period(backplane: &Backplane) -> Duration {
     Duration::from_micros(u64::from(backplane.registers.get(Reg::ScanoutPeriod).clamp(1000, 1_000_000)))
 }
 
+/// Composes what the display shows: the frame, and the cursor over it.
+fn picture(memory: &VideoMemory, surface: &Surface, cursor: Option<&Cursor>, frame: &mut Vec<u32>) {
+    compose(memory.words(), surface, &Cleared::of(memory, surface), frame);
+    if let Some(cursor) = cursor {
+        cursor.overlay(memory, surface, frame);
+    }
+}
+
 /// Charges a frame put out.
-fn charge(account: &mut Account, surface: &Surface, cleared: &Cleared<'_>) {
+fn charge(account: &mut Account, surface: &Surface, cleared: &Cleared<'_>, cursor: Option<&Cursor>) {
     let pixels = u64::from(surface.width) * u64::from(surface.height);
     account.add(Counter::ScanoutFrames, 1);
     account.add(Counter::ScanoutPixels, pixels);
     account.add(Counter::ScanoutBackgroundBlocks, cleared.blocks());
-    account.charge(Counter::CyclesScanout, Clocks(pixels));
+    let [covered, fetches] = cursor.map_or([0; 2], |cursor| cursor.cost(surface));
+    account.add(Counter::ScanoutCursorPixels, covered);
+    account.charge(Counter::CyclesScanout, Clocks(pixels + fetches));
 }
 
 /// The frame that the SCANOUT registers describe; `None` is a dark screen.

@@ -257,6 +257,12 @@ impl<'a, 'b> Composer<'a, 'b> {
         };
         let size = if self.bytes.chance(16) { self.bytes.word() } else { size };
         self.write(Reg::ScanoutBase, &[base, pitch, format, size]);
+        if self.bytes.chance(32) {
+            // On the frame, or beyond any edge.
+            let place = self.bytes.below(size.max(1)).wrapping_sub(self.bytes.below(64));
+            let base = if self.bytes.chance(64) { self.bytes.word() } else { 64 * self.bytes.below(self.memory / 64) };
+            self.write(Reg::CursorControl, &[1, base, place]);
+        }
         if self.bytes.chance(4) {
             // Continuous, 1 to 3 ms; a reset ends it.
             let period = 1000 + self.bytes.below(2000);
