@@ -228,6 +228,10 @@ impl Bill {
                 if storage.z_buffer_bytes > 0 {
                     account.bytes.push(("z_buffer", storage.z_buffer_bytes));
                 }
+                if cost.called.contains(Effects::STENCIL) {
+                    // A byte a pixel, on every path.
+                    account.bytes.push(("stencil", u64::from(size[0]) * u64::from(size[1])));
+                }
             }
             account
         };
@@ -294,6 +298,17 @@ mod tests {
                 assert_eq!(sum, bill.cost.counters.get(Counter::CyclesTotal), "{demo} on {name}");
             }
         }
+    }
+
+    #[test]
+    fn bill_counts_the_bytes_of_the_stencil_plane_where_it_is_called() {
+        let bytes = |demo| {
+            let bill = bill(demo, CardSettings::default());
+            let account = bill.accounts.iter().find(|account| account.part == "z_buffer").expect("listed");
+            account.bytes.clone()
+        };
+        assert_eq!(bytes("shadow"), [("z_buffer", 4 * 160 * 120), ("stencil", 160 * 120)]);
+        assert_eq!(bytes("teapot"), [("z_buffer", 4 * 160 * 120)]);
     }
 
     #[test]

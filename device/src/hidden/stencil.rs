@@ -242,9 +242,9 @@ pub fn pixels(runs: &[[u32; 3]]) -> u64 {
     runs.iter().map(|&[_, first, beyond]| u64::from(beyond - first)).sum()
 }
 
-/// Charges the shadow bit over a whole target, of which so many pixels were in shadow, to the unit of its path.
-pub fn charge_shadow(target: &Target, pixels: u64, account: &mut Account) {
-    let lines = u64::from(target.colour.width.div_ceil(LINE)) * u64::from(target.colour.height);
+/// Charges the shadow bit over so many rows of a target, of which so many pixels were in shadow, to the unit of its path.
+pub fn charge_shadow(target: &Target, rows: u32, pixels: u64, account: &mut Account) {
+    let lines = u64::from(target.colour.width.div_ceil(LINE)) * u64::from(rows);
     account.add(Counter::StencilShadowed, pixels);
     account.add(Counter::ColourWrites, pixels);
     account.charge(cycles(target), Clocks(lines + pixels));
@@ -351,7 +351,7 @@ mod tests {
     #[test]
     fn charge_shadow_reads_the_plane_and_writes_what_is_darkened() {
         let mut account = Account::default();
-        charge_shadow(&target(PixelFormat::Rgb565), pixels(&[[0, 0, 5], [1, 2, 4]]), &mut account);
+        charge_shadow(&target(PixelFormat::Rgb565), 2, pixels(&[[0, 0, 5], [1, 2, 4]]), &mut account);
         let found = [Counter::StencilShadowed, Counter::ColourWrites, Counter::CyclesTile].map(|c| account.get(c));
         assert_eq!(found, [7, 7, 9]);
     }

@@ -228,9 +228,12 @@ impl Pipeline {
                 self.sorted.end(memory.drawing(), &target, self.level, layers, account, stop)
             }
         };
-        if let (Some(shadow), Some(_), Ok(())) = (shadow, StencilKey::built(), drawn) {
-            shadow_path::darken(memory, &target, shadow, account);
-        }
+        let drawn = match (shadow, StencilKey::built()) {
+            (Some(shadow), Some(_)) => {
+                drawn.and_then(|()| shadow_path::darken(memory, &target, shadow, account, begun, stop))
+            }
+            _ => drawn,
+        };
         let spent = account.total().0 - begun.0;
         let stop = |clocks: Clocks| stop(Clocks(spent + clocks.0));
         let resolved = drawn

@@ -3,6 +3,9 @@
 use crate::rig::*;
 use zga_abi::Bus;
 
+/// Bit of EFFECTS.
+const STENCIL: u32 = 1 << 11;
+
 /// Opens a scene of 16 x 16 pixels: colours at 0, depths at 0x8000, both cleared.
 fn begin(rig: &mut Rig) {
     rig.push(&register_write(0x200, &[(16 << 16) | 16, 0, 64, 0, 0x8000, 64]));
@@ -68,6 +71,27 @@ fn draw_longer_than_the_watchdog_allows_is_stopped() {
     rig.push(&[0x1100_0005, 2, 0x0010_0000, 600_000, 0, 0]);
     rig.finish(1);
     assert_eq!(rig.read32(ERROR_CODE), 0);
+}
+
+#[test]
+fn shadow_longer_than_the_watchdog_allows_is_stopped_between_rows() {
+    let mut rig = Rig::with_memory(32 << 20);
+    // 2048 x 1024 white pixels, a stencil plane, and all of it in shadow, of which nothing is left.
+    rig.push(&register_write(0x200, &[(1024 << 16) | 2048, 0, 8192, 0, 8 << 20, 8192]));
+    rig.push(&register_write(0x21C, &[16 << 20, 2048]));
+    rig.push(&register_write(0x380, &[0x71, 0]));
+    rig.push(&register_write(WATCHDOG, &[1]));
+    rig.push(&[0x0200_0000]);
+    rig.push(&[0x0400_0003, 3, 0xFFFF_FFFF, 0x00FF_FFFF]);
+    rig.push(&register_write(0x280, &[STENCIL | 1]));
+    rig.push(&triangle(0.5, 0xFFFF_FFFF));
+    rig.push(&[0x0300_0000]);
+    rig.until(ERROR_CODE, 14);
+    assert_eq!(rig.read32(0x94), 0x0300_0000);
+    // 32 + 2048 clocks a row, 64 rows at a time: the limit of 2^20 lies in the eighth 64 rows.
+    let column: Vec<u32> = (0..1024).map(|row| rig.words(8192 * row, 1)[0]).collect();
+    assert!(column[..512].iter().all(|&pixel| pixel == 0xFF00_0000));
+    assert!(column[512..].iter().all(|&pixel| pixel == 0xFFFF_FFFF));
 }
 
 #[test]
