@@ -355,7 +355,8 @@ impl<B: Bus> Driver<B> {
     ) -> Result<(), DriverError> {
         let state = &self.state;
         let fitted = matches!(state.decal, Some(DecalState::Fitted { .. }));
-        if !state.matrices_due && !(fitted && state.composed_marking != Some(marking)) {
+        let other_marking = fitted && state.composed_marking != Some(marking);
+        if !(state.matrices_due || other_marking) {
             return Ok(());
         }
         let format = depth.unwrap_or_default();
