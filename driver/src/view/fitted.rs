@@ -27,8 +27,8 @@
 //! * **Depth**: 1/2 step for the vertices and 1/2 for the stored value of each, 2 together; rounded gradients drift by (|i| + |j| +
 //!   1) 2^-(F+1) steps over i and j pixels. One step more makes the marking nearer and not only as near.
 //!
-//! Each is reached, so no smaller displacement is enough for all lines of a plane: a line half a pixel off in the axis of
-//! the steeper gradient needs the first to the last bit.
+//! The first is reached: a line half a pixel off along the axis of the steeper gradient needs it to the last bit, so no smaller
+//! displacement is enough for all lines of a plane. The snap adds 1/64 of it at most with s = 8, the rest some steps.
 //!
 //! # The limit
 //!
