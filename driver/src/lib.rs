@@ -90,5 +90,5 @@ pub use probe::PixelHistory;
 pub use state::Rectangle;
 pub use submit::{CardFault, FaultSource, Fence, Submit};
 pub use target::{Target, TargetOptions};
-pub use view::{Camera, Decal, DecalInfo, Matrix, ViewError};
+pub use view::{Camera, Corners, Decal, DecalInfo, FitInfo, Matrix, ViewError};
 pub use warning::Warning;

@@ -3,14 +3,14 @@
 use glam::DMat4;
 use zga_abi::Effects;
 use zga_abi::bus::Bus;
-use zga_abi::format::DepthFunction;
+use zga_abi::format::{DepthFormat, DepthFunction, Topology};
 use zga_abi::packet::DrawFlags;
 use zga_abi::registers::Reg;
 
 use crate::antialias::AntialiasState;
 use crate::effects::EffectState;
 use crate::hidden::HiddenState;
-use crate::view::{Camera, Decal, Matrix, camera, finite};
+use crate::view::{Camera, Corners, Decal, FitInfo, FitView, FittedDecal, Marking, Matrix, camera, finite};
 use crate::{DecalInfo, Driver, DriverError, Target, Warning};
 
 /// The whole target.
@@ -31,12 +31,29 @@ pub struct Rectangle {
     pub bottom: u32,
 }
 
+/// How what is drawn is moved.
+#[derive(Clone, Debug)]
+pub(crate) enum DecalState {
+    /// By a slope.
+    Slope(f64),
+    /// By what surfaces need, as far as the slope allows.
+    Fitted { slope: f64, surfaces: Vec<Corners> },
+}
+
+/// What matrices depend on of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ComposedFor {
+    pub size: [u32; 2],
+    pub depth: Option<DepthFormat>,
+    pub subpixel_bits: u32,
+}
+
 /// What the user has set.
 #[derive(Debug)]
 pub(crate) struct State {
     pub camera: Camera,
     pub object: DMat4,
-    pub decal: Option<f64>,
+    pub decal: Option<DecalState>,
     pub depth_function: DepthFunction,
     pub depth_write: bool,
     pub hidden: HiddenState,
@@ -46,10 +63,12 @@ pub(crate) struct State {
     pub scissor: [u32; 2],
     pub material: u32,
     pub tag: u32,
-    /// Target size that the matrices were composed for.
-    pub composed_for: (u32, u32),
+    /// Scene that the matrices were composed for.
+    pub composed_for: Option<ComposedFor>,
     /// Camera, object, decal or target size changed since the matrices were composed.
     matrices_due: bool,
+    /// What a fitted decal was composed for.
+    composed_marking: Option<Marking>,
 }
 
 impl State {
@@ -67,14 +86,22 @@ impl State {
             scissor: NO_SCISSOR,
             material: u32::MAX,
             tag: 0,
-            composed_for: (0, 0),
+            composed_for: None,
             matrices_due: true,
+            composed_marking: None,
         }
     }
 
     /// The matrices must be composed again.
     pub const fn matrices_changed(&mut self) {
         self.matrices_due = true;
+    }
+
+    /// What decals are fitted in; bits of coordinates are the scene's, or those of the next one.
+    fn fit_view(&self, size: [u32; 2], depth: Option<DepthFormat>) -> FitView<'_> {
+        let (object, format) = (camera::narrow(self.object), depth.unwrap_or_default());
+        let subpixel_bits = self.composed_for.map_or(self.subpixel_bits, |scene| scene.subpixel_bits);
+        FitView { camera: &self.camera, object, size, format, subpixel_bits }
     }
 }
 
@@ -169,7 +196,64 @@ impl<B: Bus> Driver<B> {
         if let Some(scene) = &self.scene {
             Decal::new(&self.state.camera, scene.width, slope, scene.depth.unwrap_or_default())?;
         }
-        let outer = self.state.decal.replace(slope);
+        self.moved(DecalState::Slope(slope), draw)
+    }
+
+    /// Draws surface markings that lie on surfaces which are known: what `draw` draws is moved toward the viewer by what
+    /// these surfaces need where they are seen, which buries nothing and shows as little as possible through what lies in
+    /// front. `slope` is the limit: where a surface is steeper than that as a whole, markings on it are moved no farther
+    /// than that slope needs. The bound and its proof: `view/fitted.rs`.
+    ///
+    /// `surfaces` are triangles in object space, under the object transform of the draws. One is enough for markings on a
+    /// flat surface of any outline; the two faces beside an edge for a marking along it, and all faces round an end for one that ends at
+    /// a corner of a hollow. Markings should lie in the box round the surfaces' corners: from there the rounding of positions is taken.
+    /// With several surfaces the one that needs most decides, so markings on different ones are best drawn each in a scope of its own.
+    /// Anti-aliased lines and points are moved as their widths need; the bound is that of samples with depths of their own.
+    ///
+    /// ```
+    /// # use zga_device::{Card, CardOptions};
+    /// # use zga_driver::{Driver, TargetOptions, Vertex};
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// # let card = Card::power_on(CardOptions::default())?;
+    /// # let mut driver = Driver::open(card.bus())?;
+    /// let target = driver.create_target(TargetOptions::new(64, 48))?;
+    /// let surface = [[4.0, 4.0, 0.2], [60.0, 24.0, 0.8], [4.0, 44.0, 0.2]];
+    /// driver.begin_scene(&target)?;
+    /// driver.clear(Some([0, 0, 64, 255]), Some(1.0))?;
+    /// driver.draw_triangle(surface.map(|corner| Vertex::new(corner, [255, 0, 0, 255])))?;
+    /// driver.decal_on(8.0, &[surface], |driver| {
+    ///     driver.draw_line([Vertex::new([4.5, 24.5, 0.206], [255; 4]), Vertex::new([56.5, 24.5, 0.763], [255; 4])])
+    /// })?;
+    /// driver.end_scene()?;
+    /// driver.present(&target)?;
+    /// assert_eq!(driver.capture()?.pixels[24 * 64 + 20], 0xFFFF_FFFF);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// [`crate::ViewError::BadNumber`] if the slope is below 0 or a number is not finite,
+    /// [`crate::ViewError::NoSurface`] without a surface or if one has no plane (inside a scene; outside, the first draw
+    /// tells); else those of `draw`.
+    pub fn decal_on<T>(
+        &mut self,
+        slope: f64,
+        surfaces: &[Corners],
+        draw: impl FnOnce(&mut Driver<B>) -> Result<T, DriverError>,
+    ) -> Result<T, DriverError> {
+        if let Some(scene) = &self.scene {
+            let view = self.state.fit_view([scene.width, scene.height], scene.depth);
+            FittedDecal::new(&view, slope, surfaces, Marking::Lines)?;
+        }
+        self.moved(DecalState::Fitted { slope, surfaces: surfaces.to_vec() }, draw)
+    }
+
+    fn moved<T>(
+        &mut self,
+        decal: DecalState,
+        draw: impl FnOnce(&mut Driver<B>) -> Result<T, DriverError>,
+    ) -> Result<T, DriverError> {
+        let outer = self.state.decal.replace(decal);
         self.state.matrices_changed();
         let result = draw(self);
         self.state.decal = outer;
@@ -185,6 +269,26 @@ impl<B: Bus> Driver<B> {
         let options = self.target_state(target)?.options;
         let format = options.depth.unwrap_or_default();
         Ok(Decal::new(&self.state.camera, options.width, slope, format)?.info)
+    }
+
+    /// What a decal fitted to these surfaces does to markings of a kind on `target`, with the present camera and object
+    /// transform and no anti-aliasing.
+    ///
+    /// # Errors
+    /// As [`Driver::decal_on`], and [`DriverError::UnknownTarget`].
+    pub fn decal_on_info(
+        &self,
+        target: &Target,
+        slope: f64,
+        surfaces: &[Corners],
+        topology: Topology,
+    ) -> Result<FitInfo, DriverError> {
+        let options = self.target_state(target)?.options;
+        let view = FitView {
+            subpixel_bits: self.state.subpixel_bits,
+            ..self.state.fit_view([options.width, options.height], options.depth)
+        };
+        Ok(FittedDecal::new(&view, slope, surfaces, Marking::of(topology, None))?.info)
     }
 
     /// Whether the scissor leaves all of a target of this size in reach.
@@ -218,9 +322,12 @@ impl<B: Bus> Driver<B> {
             Err(lost) => return Err(met.err().unwrap_or(lost)),
         };
         self.check_stencil(&scene)?;
-        let (width, height, depth) = (scene.width, scene.height, scene.depth);
-        self.compose_matrices(width, height, depth)?;
-        let mut effects = self.want_masks(&scene) | self.want_effects(flags, gouraud);
+        let depth = scene.depth;
+        let masks = self.want_masks(&scene);
+        let AntialiasState { line_width, point_size, .. } = self.state.antialias;
+        let marking = Marking::of(flags.topology, (!masks.is_empty()).then_some([line_width, point_size]));
+        self.compose_matrices([scene.width, scene.height], depth, marking)?;
+        let mut effects = masks | self.want_effects(flags, gouraud);
         let state = &self.state;
         let tests_depth = depth.is_some() && (state.depth_function != DepthFunction::Always || state.depth_write);
         let begins_far = tests_depth && !scene.depth_known;
@@ -239,24 +346,34 @@ impl<B: Bus> Driver<B> {
         Ok(met.and(self.send_registers()))
     }
 
-    /// Composes the matrices if they are due.
+    /// Composes the matrices if they are due: a fitted decal also for other markings than before.
     fn compose_matrices(
         &mut self,
-        width: u32,
-        height: u32,
-        depth: Option<zga_abi::format::DepthFormat>,
+        [width, height]: [u32; 2],
+        depth: Option<DepthFormat>,
+        marking: Marking,
     ) -> Result<(), DriverError> {
-        if !self.state.matrices_due {
+        let state = &self.state;
+        let fitted = matches!(state.decal, Some(DecalState::Fitted { .. }));
+        let other_marking = fitted && state.composed_marking != Some(marking);
+        if !(state.matrices_due || other_marking) {
             return Ok(());
         }
-        let state = &self.state;
+        let format = depth.unwrap_or_default();
         let matrices = state.camera.matrices(width, height)?;
         let object_eye = camera::narrow(state.camera.view()? * state.object);
-        let decal = match state.decal {
-            Some(slope) => Some(Decal::new(&state.camera, width, slope, depth.unwrap_or_default())?),
-            None => None,
+        let (decal, info) = match &state.decal {
+            Some(DecalState::Slope(slope)) => {
+                let decal = Decal::new(&state.camera, width, *slope, format)?;
+                (Some(decal.matrix), Some(decal.info))
+            }
+            Some(DecalState::Fitted { slope, surfaces }) => {
+                let view = state.fit_view([width, height], depth);
+                (Some(FittedDecal::new(&view, *slope, surfaces, marking)?.matrix), None)
+            }
+            None => (None, None),
         };
-        if let (Some(Decal { info, .. }), Some(depth)) = (decal, depth)
+        if let (Some(info), Some(depth)) = (info, depth)
             && let Some(distance) = info.one_step_distance
         {
             let (slope, steps_far) = (info.slope, info.depth_steps_far);
@@ -264,12 +381,13 @@ impl<B: Bus> Driver<B> {
         }
         self.registers.want(Reg::ObjectEye, &object_eye.map(f32::to_bits));
         // Outside a decal scope the matrix is not in use: what is there can stay.
-        if let Some(decal) = decal {
-            self.registers.want(Reg::Decal, &decal.matrix.map(f32::to_bits));
+        if let Some(matrix) = decal {
+            self.registers.want(Reg::Decal, &matrix.map(f32::to_bits));
         }
         self.registers.want(Reg::EyeClip, &matrices.eye_clip.map(f32::to_bits));
         self.registers.want(Reg::Viewport, &matrices.viewport.map(f32::to_bits));
         self.state.matrices_due = false;
+        self.state.composed_marking = Some(marking);
         Ok(())
     }
 }

@@ -7,6 +7,7 @@ use zga_abi::registers::Reg;
 
 use crate::hidden::ZaAreas;
 use crate::memory::{Alignment, Allocation};
+use crate::state::ComposedFor;
 use crate::{Driver, DriverError};
 
 /// Largest width and height in pixels.
@@ -237,8 +238,9 @@ impl<B: Bus> Driver<B> {
         }
         self.registers.want(Reg::SubpixelBits, &[self.state.subpixel_bits]);
         let grid = self.want_antialias();
-        if self.state.composed_for != (width, height) {
-            self.state.composed_for = (width, height);
+        let composed_for = Some(ComposedFor { size: [width, height], depth, subpixel_bits: self.state.subpixel_bits });
+        if self.state.composed_for != composed_for {
+            self.state.composed_for = composed_for;
             self.state.matrices_changed();
         }
         let (id, depth_known) = (target.id, uses_z_buffer);

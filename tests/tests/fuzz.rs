@@ -89,6 +89,9 @@ fn run_noise_every_packet_kind_is_executed() {
     }
     assert_eq!(coverage.missing(), Vec::<&str>::new());
     assert!(coverage.topologies.iter().all(|&draws| draws > 0), "{coverage}");
+    let silent = coverage.silent();
+    let stencil = ["stencil.tested", "stencil.failed", "stencil.shadowed"];
+    assert!(stencil.iter().all(|counter| !silent.contains(counter)), "{silent:?}");
 }
 
 #[test]

@@ -53,6 +53,36 @@ pub fn corners(mesh: &Mesh, size: [u32; 2], turn: f64) -> Vec<Corner> {
     all
 }
 
+/// How often a texture goes round a mesh without coordinates of its own.
+const ROUND: f64 = 6.0;
+
+/// [`corners`] with texture coordinates: the mesh's own, or the angle about its vertical and the height.
+#[must_use]
+pub fn textured(mesh: &Mesh, size: [u32; 2], turn: f64) -> Vec<Corner> {
+    let mut all = corners(mesh, size, turn);
+    let bounds = mesh.bounds();
+    let wrapped = |index: u32| {
+        let position = mesh.positions[index as usize];
+        let [x, y, z] = [0, 1, 2].map(|axis| f64::from(position[axis]) - f64::from(bounds.centre[axis]));
+        [x.atan2(z) / std::f64::consts::TAU * ROUND, -y / f64::from(bounds.radius).max(1e-30) * ROUND / 3.0]
+    };
+    for (corners, triangle) in all.as_chunks_mut::<3>().0.iter_mut().zip(mesh.indices.as_chunks::<3>().0) {
+        let mut coordinates = match &mesh.texture_coordinates {
+            Some(own) => triangle.map(|index| own[index as usize].map(f64::from)),
+            None => triangle.map(wrapped),
+        };
+        if mesh.texture_coordinates.is_none() {
+            // The other two corners as near to the first as whole turns allow: no triangle goes round the back.
+            let first = coordinates[0][0];
+            coordinates.iter_mut().for_each(|[u, _]| *u -= ((*u - first) / ROUND).round() * ROUND);
+        }
+        for (corner, place) in corners.iter_mut().zip(coordinates) {
+            (corner.colour, corner.coordinates) = (u32::MAX, place.map(|part| part as f32));
+        }
+    }
+    all
+}
+
 /// The same on the screen, each triangle in one colour by how it faces a light; `base` is the colour in full light.
 /// Triangles that would not fit the exact numbers are left out.
 #[must_use]
@@ -91,4 +121,27 @@ pub fn crossing(mesh: &Mesh, size: [u32; 2]) -> Scene {
     let mut facets_of_both = facets(&corners(mesh, size, 25.0), size, [236, 190, 120]);
     facets_of_both.extend(facets(&corners(mesh, size, 70.0), size, [110, 170, 240]));
     Scene { size, facets: facets_of_both }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::teapot::Teapot;
+
+    #[test]
+    fn textured_without_coordinates_wraps_and_with_coordinates_takes_them() {
+        let mut mesh = Teapot::new(4, [255; 4]).mesh().clone();
+        let wrapped = textured(&mesh, [80, 60], 25.0);
+        for triangle in wrapped.as_chunks::<3>().0 {
+            let first = triangle[0].coordinates[0];
+            // ROUND is once round; half of that is the farthest that the nearest turn can be.
+            assert!(triangle.iter().all(|corner| (corner.coordinates[0] - first).abs() <= 3.0001), "{triangle:?}");
+        }
+        assert!(wrapped.iter().any(|corner| corner.coordinates[0] > 1.0));
+
+        mesh.texture_coordinates = Some(mesh.positions.iter().map(|[x, _, z]| [*x, *z]).collect());
+        let own = textured(&mesh, [80, 60], 25.0);
+        let expected = mesh.indices.iter().map(|index| mesh.positions[*index as usize]).map(|[x, _, z]| [x, z]);
+        assert!(own.iter().map(|corner| corner.coordinates).eq(expected));
+    }
 }

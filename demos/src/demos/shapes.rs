@@ -30,7 +30,7 @@ pub(super) fn pieces(points: &[[f32; 3]], closed: bool) -> Vec<[f32; 3]> {
 
 /// A decal of the usual slope.
 pub(super) fn decal(draw: Vec<Draw>) -> Draw {
-    Draw::Decal(Decal { slope: crate::scene::DEFAULT_SLOPE, draw })
+    Draw::Decal(Decal { slope: crate::scene::DEFAULT_SLOPE, surfaces: Vec::new(), draw })
 }
 
 /// A mesh where it stands.

@@ -305,7 +305,8 @@ impl<B: Bus> Session<B> {
             driver.set_depth_write(view.tests_depth && batch.material.depth_write);
             set_material(driver, batch, texture).map_err(place())?;
             match batch.slope {
-                Some(slope) => driver.decal(slope.into(), |driver| driver.draw_mesh(mesh)),
+                Some(slope) if batch.surfaces.is_empty() => driver.decal(slope.into(), |driver| driver.draw_mesh(mesh)),
+                Some(slope) => driver.decal_on(slope.into(), &batch.surfaces, |driver| driver.draw_mesh(mesh)),
                 None => driver.draw_mesh(mesh),
             }
             .map_err(place())?;

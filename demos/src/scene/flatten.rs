@@ -48,6 +48,8 @@ pub struct Batch {
     pub transform: Matrix,
     /// Slope of the decal transform, where the batch is a surface marking.
     pub slope: Option<f32>,
+    /// Of a fitted decal the surfaces, in world units; empty for others.
+    pub surfaces: Arc<Vec<[[f32; 3]; 3]>>,
     /// How the surface looks: the draw's material or that of a mesh's part. It has a texture only together with its
     /// picture and with texture coordinates, and holes only with a texture.
     pub material: Arc<Material>,
@@ -72,6 +74,7 @@ impl Scene {
             plain: Arc::default(),
             batches: Vec::new(),
             next_tag: free_tag(&self.draw),
+            surfaces: Arc::default(),
         };
         for (index, draw) in self.draw.iter().enumerate() {
             flattener.draw(draw, format!("draw[{index}]"), None);
@@ -98,6 +101,8 @@ pub(super) struct Flattener<'a> {
     plain: Arc<Material>,
     pub(super) batches: Vec<Batch>,
     next_tag: u32,
+    /// Of the decal that is being flattened.
+    pub(super) surfaces: Arc<Vec<[[f32; 3]; 3]>>,
 }
 
 impl Flattener<'_> {
@@ -108,9 +113,11 @@ impl Flattener<'_> {
             Draw::Points(primitives) => self.primitives(primitives, Topology::Points, path, slope),
             Draw::Curve(curve) => self.curve(curve, path, slope),
             Draw::Decal(decal) => {
+                self.surfaces = Arc::new(decal.surfaces.clone());
                 for (index, draw) in decal.draw.iter().enumerate() {
                     self.draw(draw, format!("{path}.decal.draw[{index}]"), Some(decal.slope));
                 }
+                self.surfaces = Arc::default();
             }
             Draw::Mesh(named) => {
                 if let Some(mesh) = &named.mesh {
@@ -145,6 +152,7 @@ impl Flattener<'_> {
             indices: draw.indices.clone().unwrap_or_else(in_order),
             transform: IDENTITY,
             slope,
+            surfaces: Arc::clone(&self.surfaces),
             material: self.material(draw.material.as_deref()),
             light: Lighting::None,
             translucent: false,
@@ -175,6 +183,7 @@ impl Flattener<'_> {
             indices,
             transform: IDENTITY,
             slope,
+            surfaces: Arc::clone(&self.surfaces),
             material: self.material(curve.material.as_deref()),
             light: Lighting::None,
             translucent: false,

@@ -186,7 +186,10 @@ pub struct Curve {
 pub struct Decal {
     /// The slope S that the markings survive; negative moves away from the viewer.
     pub slope: f32,
-    /// The markings; no decal among them.
+    /// Triangles, in world units, of the surfaces that the markings lie on: they are moved no farther than these need, and
+    /// `slope` is the limit. Without any they are moved by `slope`.
+    pub surfaces: Vec<[[f32; 3]; 3]>,
+    /// The markings; no decal among them, and with surfaces no mesh, which has a place of its own.
     pub draw: Vec<Draw>,
 }
 

@@ -51,7 +51,12 @@ fn document(tree: &Json) -> Read<Scene> {
         .required("size", |value| value.array("whole numbers", |side| side.whole(1..=MAX_TARGET_PIXELS_PER_SIDE)))?;
     let camera = fields.or("camera", Camera::Screen, camera)?;
     let materials = fields.optional("materials", parse_effects::materials)?.unwrap_or_default();
-    let context = Context { materials: &materials, in_pixels: camera == Camera::Screen, inside_decal: false };
+    let context = Context {
+        materials: &materials,
+        in_pixels: camera == Camera::Screen,
+        inside_decal: false,
+        inside_fitted: false,
+    };
     let draw = fields.required("draw", |value| parse_draw::draws(value, context))?;
     Ok(Scene {
         size,

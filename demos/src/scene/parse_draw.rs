@@ -5,10 +5,13 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use super::json::{ANY, Fault, Json, Object, Read, quoted};
-use super::{Colours, Curve, CurveKind, DEFAULT_SLOPE, Decal, Draw, IDENTITY, Material, MeshDraw, Primitives};
+use super::{Colours, Curve, CurveKind, DEFAULT_SLOPE, Decal, Draw, IDENTITY, Material, MeshDraw, Primitives, wide};
 
 /// Steepest slope of a decal, either way; far above what any picture needs.
 const MAX_SLOPE: f32 = 65536.0;
+
+/// Most surfaces that a decal is fitted to.
+const MAX_SURFACES: usize = 65_536;
 
 /// Narrowest and widest line, least and greatest side of a point, in pixels: 1 and 65535 steps of 1/256.
 const EXTENTS: RangeInclusive<f32> = 1.0 / 256.0..=65_535.0 / 256.0;
@@ -20,6 +23,8 @@ pub(super) struct Context<'a> {
     /// Positions are pixels and depth, so depth has a range.
     pub(super) in_pixels: bool,
     pub(super) inside_decal: bool,
+    /// That decal is fitted to surfaces.
+    pub(super) inside_fitted: bool,
 }
 
 /// Vertices of one primitive, and what a list of them is called.
@@ -57,6 +62,9 @@ fn draw(value: &Json, context: Context<'_>) -> Read<Draw> {
         "points" => primitives(value, context, POINTS).map(Draw::Points),
         "curve" => curve(value, context).map(Draw::Curve),
         "decal" => decal(value, context).map(Draw::Decal),
+        _ if context.inside_fitted => {
+            Err(Fault::new("a draw that is no mesh, because the decal it is in has surfaces", "a mesh"))
+        }
         _ => mesh(value, context).map(Draw::Mesh),
     };
     read.map_err(|fault| fault.in_field(kind))
@@ -217,11 +225,27 @@ fn decal(value: &Json, context: Context<'_>) -> Read<Decal> {
     if context.inside_decal {
         return Err(Fault::new("a draw that is no decal, because this one is inside a decal", "a decal"));
     }
-    let fields = value.object(&["slope", "draw"])?;
-    let slope = slope(&fields)?;
-    let inside = Context { inside_decal: true, ..context };
+    let fields = value.object(&["slope", "surfaces", "draw"])?;
+    let surfaces = fields.or("surfaces", Vec::new(), |value| value.list("triangles", 1..=MAX_SURFACES, surface))?;
+    let fitted = !surfaces.is_empty();
+    let slope = match fitted {
+        false => slope(&fields)?,
+        // A limit has no direction.
+        true => fields.or("slope", DEFAULT_SLOPE, |value| value.number(0.0..=MAX_SLOPE))?,
+    };
+    let inside = Context { inside_decal: true, inside_fitted: fitted, ..context };
     let draw = fields.required("draw", |value| draws(value, inside))?;
-    Ok(Decal { slope, draw })
+    Ok(Decal { slope, surfaces, draw })
+}
+
+/// A triangle with a plane.
+fn surface(value: &Json) -> Read<[[f32; 3]; 3]> {
+    let corners: [[f32; 3]; 3] = value.array("corners", Json::numbers)?;
+    let [a, b, c] = corners.map(wide);
+    match (b - a).cross(c - a) == glam::DVec3::ZERO {
+        false => Ok(corners),
+        true => Err(Fault::new("three corners that do not lie on a line", "corners on a line")),
+    }
 }
 
 fn mesh(value: &Json, context: Context<'_>) -> Read<MeshDraw> {

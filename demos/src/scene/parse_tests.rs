@@ -251,6 +251,26 @@ fn parse_wrong_draws_name_path_and_reason() {
 }
 
 #[test]
+fn parse_decal_with_surfaces_is_fitted_to_them_and_takes_no_mesh() {
+    let with = |surfaces: &str, draw: &str| format!(r#"{{"decal": {{"surfaces": {surfaces}, "draw": [{draw}]}}}}"#);
+    let line = r#"{"lines": {"vertices": [[1,1,0.5],[2,2,0.5]]}}"#;
+    let plane = "[[[0,0,0.25],[9,0,0.5],[0,9,0.75]]]";
+    let scene = parse(&format!(r#"{{"size": [9,9], "draw": [{}, {line}]}}"#, with(plane, line))).expect("valid");
+    let [fitted, plain] = &scene.batches()[..] else { panic!("two batches") };
+    assert_eq!(*fitted.surfaces, [[[0.0, 0.0, 0.25], [9.0, 0.0, 0.5], [0.0, 9.0, 0.75]]]);
+    assert_eq!((fitted.slope, plain.slope, plain.surfaces.len()), (Some(8.0), None, 0));
+
+    assert_eq!(draw_fault(&with("[]", line))[0], "draw[0].decal.surfaces");
+    assert_eq!(draw_fault(&with("[[[0,0,0],[1,1,1]]]", line))[0], "draw[0].decal.surfaces[0]");
+    assert_eq!(draw_fault(&with("[[[0,0,0],[1,1,1],[3,3,3]]]", line))[2], "corners on a line");
+    let [path, expected, _] = draw_fault(&with(plane, r#"{"mesh": {"file": "a.obj"}}"#));
+    assert_eq!(path, "draw[0].decal.draw[0].mesh");
+    assert!(expected.contains("no mesh"), "{expected}");
+    let negative = r#"{"decal": {"slope": -1, "surfaces": [[[0,0,0],[1,0,0],[0,1,0]]], "draw": []}}"#;
+    assert_eq!(draw_fault(negative)[0], "draw[0].decal.slope");
+}
+
+#[test]
 fn load_missing_mesh_names_field_and_file() {
     let mut scene = parse(r#"{"size": [1,1], "draw": [{"mesh": {"file": "none.obj"}}]}"#).expect("valid");
     let error = scene.load_meshes(Path::new("nowhere"), Path::new("s.json")).expect_err("no such file");

@@ -33,6 +33,8 @@ impl Flattener<'_> {
             indices: Vec::new(),
             transform: named.transform,
             slope,
+            // A mesh has no part in a fitted decal.
+            surfaces: Arc::default(),
             material: self.material(named.material.as_deref()),
             light: Lighting::None,
             translucent: false,

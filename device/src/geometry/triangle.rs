@@ -153,9 +153,22 @@ fn inverse_of(a: &ScreenVertex, b: &ScreenVertex) -> f64 {
 #[must_use]
 #[inline(always)]
 pub fn doubled_area(a: &ScreenVertex, b: &ScreenVertex, c: &ScreenVertex) -> i64 {
-    let (bx, by) = (i64::from(b.x) - i64::from(a.x), i64::from(b.y) - i64::from(a.y));
-    let (cx, cy) = (i64::from(c.x) - i64::from(a.x), i64::from(c.y) - i64::from(a.y));
+    doubled_area_of([[a.x, a.y], [b.x, b.y], [c.x, c.y]])
+}
+
+/// The same of places in u.
+#[inline(always)]
+fn doubled_area_of([a, b, c]: [[i32; 2]; 3]) -> i64 {
+    let [bx, by] = [0, 1].map(|axis| i64::from(b[axis]) - i64::from(a[axis]));
+    let [cx, cy] = [0, 1].map(|axis| i64::from(c[axis]) - i64::from(a[axis]));
     bx * cy - by * cx
+}
+
+/// Whether vertices at these places, u, run counter-clockwise on the screen, where y goes down.
+#[must_use]
+#[inline(always)]
+pub fn runs_counter_clockwise(places: [[i32; 2]; 3]) -> bool {
+    doubled_area_of(places) < 0
 }
 
 /// First pixel whose centre is at or beyond `c` u.

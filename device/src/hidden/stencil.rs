@@ -12,9 +12,8 @@
 //! Systolic array and tile unit: none. A comparator keeps the value in a register that is loaded and stored along with the
 //! line or the tile. The shadow bit: 1 for 64 bytes of the plane read, 1 a pixel darkened; the path's unit is charged.
 
-use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::Shape;
-use crate::geometry::triangle::doubled_area;
+use crate::geometry::triangle::runs_counter_clockwise;
 use crate::probe::account::{Account, Clocks};
 use std::ops::Range;
 use zga_abi::Counter;
@@ -114,14 +113,9 @@ impl StencilRule {
 #[must_use]
 pub fn is_front(shape: &Shape) -> bool {
     match shape {
-        Shape::Triangle(_, v) => runs_counter_clockwise(v),
+        Shape::Triangle(_, v) => runs_counter_clockwise(v.each_ref().map(|v| [v.x, v.y])),
         Shape::Line(..) | Shape::Point(..) => true,
     }
-}
-
-/// Whether vertices run counter-clockwise on the screen, where y goes down.
-fn runs_counter_clockwise(v: &[ScreenVertex; 3]) -> bool {
-    doubled_area(&v[0], &v[1], &v[2]) < 0
 }
 
 /// Rows of stencil values.

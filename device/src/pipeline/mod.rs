@@ -8,7 +8,9 @@
 //! [`crate::geometry`]); the rest is charged by the hidden-surface path.
 
 pub mod bands;
+mod draw_path;
 mod layers_path;
+mod options;
 mod shading_path;
 mod shadow_path;
 mod sorted;
@@ -16,7 +18,7 @@ mod subpixel_path;
 mod workers;
 mod za_path;
 
-use crate::built::{Called, Key, LayerKey, LightKey, StencilKey, SubpixelKey};
+use crate::built::{Key, LayerKey, LightKey, StencilKey, SubpixelKey};
 use crate::geometry::GeometryRegisters;
 use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::{Assembler, GeometryCounts, List, Widths};
@@ -25,11 +27,9 @@ use crate::geometry::transform::Transform;
 use crate::hidden::held::HeldShading;
 use crate::hidden::stencil;
 use crate::hidden::systolic::Waves;
-use crate::hidden::z_buffer::band::{DrawShading, Setting, StencilSetting};
-use crate::hidden::z_buffer::tile::TILE;
+use crate::hidden::z_buffer;
+use crate::hidden::z_buffer::band::{DrawShading, Setting};
 use crate::hidden::z_buffer::uniform::Uniform;
-use crate::hidden::z_buffer::{self, DepthTest, all_surfaces, specification};
-use crate::hidden::za::{self, ZaDraw};
 use crate::memory::VideoMemory;
 use crate::memory::areas::whole;
 use crate::probe::account::{Account, Clocks};
@@ -37,80 +37,26 @@ use crate::probe::pixel::PixelProbe;
 use crate::shading::light::Lights;
 use crate::shading::parameters::Parameters;
 use crate::shading::pixel::AlphaRule;
-use crate::shading::plane::Interpolation;
 use crate::subpixel::map::SubpixelMap;
 use crate::subpixel::scene::{Scene, Taken, Taking};
 use crate::subpixel::unit::Unit;
 use crate::texture::store::TextureStore;
-use bands::{Plane, Sight, Surfaces};
+use draw_path::setting;
 use fearless_simd::Level;
+pub use options::{Kernel, PipelineOptions};
 use rayon::prelude::*;
 use shading_path::{charge_light, drawn_to, parameter_transform};
 use sorted::Sorted;
 use std::ops::Range;
 use std::sync::Arc;
 use workers::{SHARE, Wanted, Workers};
-use zga_abi::format::{Fidelity, HiddenSurface, Topology};
+use zga_abi::format::{HiddenSurface, Topology};
 use zga_abi::{Counter, Effects};
 use zga_firmware::Stopped;
 use zga_firmware::checked::{Clear, Draw, DrawState, Rectangle, Shadow, Target};
 
 /// Most host threads.
 const MAX_THREADS: usize = 256;
-
-/// Which code draws the pixels. All give the same bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Kernel {
-    /// The widest SIMD level of this host.
-    #[default]
-    Best,
-    /// The specification: pixel by pixel, one thread.
-    Specification,
-    /// 4 lanes, SSE2; on other hosts the least level there is.
-    Sse2,
-    /// 4 lanes, SSE4.2.
-    Sse42,
-    /// 8 lanes, AVX2.
-    Avx2,
-    /// 16 lanes, AVX-512.
-    Avx512,
-}
-
-impl Kernel {
-    /// The kernels that this host can run.
-    #[must_use]
-    pub fn available() -> Vec<Kernel> {
-        let all = [Kernel::Specification, Kernel::Sse2, Kernel::Sse42, Kernel::Avx2, Kernel::Avx512];
-        all.into_iter().filter(|k| *k == Kernel::Specification || k.level().is_some()).chain([Kernel::Best]).collect()
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    fn level(self) -> Option<Level> {
-        let best = Level::new();
-        match self {
-            Kernel::Best => Some(best),
-            Kernel::Specification => None,
-            Kernel::Sse2 => best.as_sse2().map(Level::Sse2),
-            Kernel::Sse42 => best.as_sse4_2().map(Level::Sse4_2),
-            Kernel::Avx2 => best.as_avx2().map(Level::Avx2),
-            Kernel::Avx512 => best.as_avx512().map(Level::Avx512),
-        }
-    }
-
-    #[cfg(not(target_arch = "x86_64"))]
-    fn level(self) -> Option<Level> {
-        (self == Kernel::Best).then(Level::new)
-    }
-}
-
-/// How the host runs the pipeline; the picture and the counts do not depend on it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct PipelineOptions {
-    /// Host threads; 0 is one for each processor.
-    pub threads: usize,
-    /// Which code draws the pixels; one the host cannot run counts as [`Kernel::Best`].
-    pub kernel: Kernel,
-}
 
 /// Geometry, hidden surfaces and shading of a card.
 #[derive(Debug)]
@@ -514,15 +460,6 @@ impl Pipeline {
         Ok(())
     }
 
-    /// What decides visibility in a draw.
-    fn path(&mut self, memory: &mut VideoMemory, target: &Target, setting: &Setting, account: &mut Account) -> Path {
-        match target.hidden_surface {
-            HiddenSurface::ZBuffer => Path::ZBuffer,
-            HiddenSurface::Za => za_path::draw(memory, target, setting, account).map_or(Path::ZBuffer, Path::Za),
-            HiddenSurface::Systolic | HiddenSurface::Tile => Path::Sorted { held: sorted::is_held(target) },
-        }
-    }
-
     /// Transforms each vertex of a draw once.
     fn transform_shared(&mut self, fetch: &Fetch<'_>, transform: &Transform) {
         let count = fetch.vertices();
@@ -532,176 +469,6 @@ impl Pipeline {
             Some(pool) => pool.install(|| (0..count).into_par_iter().map(vertex).collect_into_vec(&mut self.shared)),
             None => self.shared.extend((0..count).map(vertex)),
         }
-    }
-
-    /// Draws what was assembled into bins.
-    fn draw_bins(
-        &mut self,
-        level: Level,
-        memory: &mut VideoMemory,
-        target: &Target,
-        setting: &Setting,
-        path: &Path,
-        account: &mut Account,
-    ) {
-        let Some([first, beyond]) = self.workers.rows() else {
-            return;
-        };
-        let (threads, bands) = (self.threads, first..beyond);
-        match path {
-            Path::ZBuffer => {
-                if let Some(uniform) = &mut self.uniform {
-                    uniform.drawn(bands.clone());
-                }
-                let planes = planes(memory.drawing(), target, setting, first);
-                let counts = self.workers.draw(threads, planes, bands, |shares, band, planes, scratch| {
-                    setting.draw_band(level, shares, band, planes, scratch)
-                });
-                z_buffer::charge(&counts, setting, account);
-            }
-            Path::Za(draw) => {
-                let (parts, areas) = memory.parts();
-                let area_words = areas.words();
-                let mut planes = planes(parts.video, target, setting, first);
-                let across = draw.grid.across();
-                planes.words =
-                    Plane::of_bands(&mut parts.za[area_words], across * TILE / draw.grid.block[1] as usize, first);
-                let counts = self.workers.draw(threads, planes, bands, |shares, band, planes, scratch| {
-                    let Surfaces { colour, depth, words, .. } = planes;
-                    draw.draw_band(level, shares, band, colour.rows, depth.rows, words.rows, scratch)
-                });
-                za::charge(&counts, draw, account);
-            }
-            Path::Sorted { .. } => {
-                let setting = Setting { depth_pitch: Sorted::depth_pitch(target), ..setting.clone() };
-                let planes = self.sorted.planes(memory.drawing(), target, &setting, first);
-                let counts = self.workers.draw(threads, planes, bands, |shares, band, planes, scratch| {
-                    setting.draw_band(level, shares, band, planes, scratch)
-                });
-                self.sorted.add(&counts, &setting);
-            }
-        }
-    }
-
-    /// Draws what was assembled into a list.
-    fn draw_list(
-        &mut self,
-        memory: &mut VideoMemory,
-        target: &Target,
-        setting: &Setting,
-        path: &Path,
-        account: &mut Account,
-    ) -> Result<(), Stopped> {
-        self.uniform = None;
-        let shapes = self.list.shapes.iter().map(|(shape, number)| (shape, *number));
-        match path {
-            Path::ZBuffer => {
-                let (colour, depth, stencil) = all_surfaces(memory.drawing(), target);
-                let counts = specification::draw_noting(setting, shapes, colour, depth, stencil, &mut Sight::none());
-                z_buffer::charge(&counts, setting, account);
-            }
-            Path::Za(draw) => {
-                let (parts, areas) = memory.parts();
-                let (colour, depth, stencil) = all_surfaces(parts.video, target);
-                let mut surfaces = za::Surfaces { colour, depth, words: &mut parts.za[areas.words()], stencil };
-                let counts = match target.fidelity {
-                    Fidelity::Functional => za::specification::draw(draw, shapes, &mut surfaces),
-                    Fidelity::Clocked => za::clocked::draw(draw, shapes, &mut surfaces),
-                };
-                za::charge(&counts, draw, account);
-            }
-            Path::Sorted { held: true } => {
-                self.sorted.hold(target, setting, &self.list);
-                if self.sorted.full() {
-                    return Err(Stopped::SceneFull);
-                }
-            }
-            Path::Sorted { held: false } => {
-                let setting = Setting { depth_pitch: Sorted::depth_pitch(target), ..setting.clone() };
-                self.sorted.note(target, setting.scissor, &self.list);
-                let Surfaces { colour, depth, stencil, mut sight, .. } =
-                    self.sorted.planes(memory.drawing(), target, &setting, 0);
-                let (colour, depth, stencil) = (colour.rows, depth.rows, stencil.rows);
-                let counts = specification::draw_noting(&setting, shapes, colour, depth, stencil, &mut sight);
-                self.sorted.add(&counts, &setting);
-            }
-        }
-        Ok(())
-    }
-}
-
-/// What decides visibility in a draw.
-enum Path {
-    ZBuffer,
-    Za(ZaDraw),
-    /// `held` back until the scene ends.
-    Sorted {
-        held: bool,
-    },
-}
-
-impl Path {
-    /// Whether primitives are drawn from bins where the host can: never where a unit is to be stepped. The Za path has no
-    /// fast way for a stencil test.
-    fn is_fast(&self, fidelity: Fidelity, stencil: bool) -> bool {
-        match self {
-            Path::ZBuffer => true,
-            Path::Za(draw) => fidelity == Fidelity::Functional && draw.fast() && !stencil,
-            Path::Sorted { held } => !held,
-        }
-    }
-
-    fn is_sorted(&self) -> bool {
-        matches!(self, Path::Sorted { .. })
-    }
-
-    /// Takes over what the colours of the primitives at hand go through.
-    fn set_shading(&mut self, setting: &Setting) {
-        if let Path::Za(draw) = self {
-            draw.pixels.shading.clone_from(&setting.shading);
-        }
-    }
-}
-
-/// The planes of a target from band `first` on.
-fn planes<'m>(memory: &'m mut [u32], target: &Target, setting: &Setting, first: usize) -> Surfaces<'m> {
-    let (colour, depth, stencil) = all_surfaces(memory, target);
-    // A block that is cleared in Za RAM only gets its depths with the first pixel drawn to it, tested or not.
-    let wanted = setting.test.is_some() || target.hidden_surface == HiddenSurface::Za;
-    let depth = if wanted { Plane::new(depth, setting.depth_pitch, first) } else { Plane::none() };
-    Surfaces {
-        colour: Plane::new(colour, setting.colour_pitch, first),
-        depth,
-        stencil: setting.stencil.map_or(Plane::none(), |setting| Plane::new(stencil, setting.pitch, first)),
-        words: Plane::none(),
-        sight: Sight::none(),
-    }
-}
-
-/// What the pixels of a draw share.
-fn setting(target: &Target, state: &DrawState) -> Setting {
-    let effects = state.effects;
-    Setting {
-        test: effects.contains(Effects::DEPTH).then(|| DepthTest::new(state.depth_function, state.depth_write)),
-        format: target.depth_format,
-        interpolation: if !effects.contains(Effects::GOURAUD) {
-            Interpolation::Flat
-        } else if effects.contains(Effects::PERSPECTIVE) {
-            Interpolation::Perspective
-        } else {
-            Interpolation::Affine
-        },
-        shading: None,
-        stencil: match (state.stencil, target.stencil) {
-            (Some(rule), Some(plane)) => Called::new(|| StencilSetting { rule, pitch: plane.pitch as usize }),
-            _ => None,
-        },
-        cuts_segments: target.hidden_surface == HiddenSurface::Systolic,
-        scissor: state.scissor,
-        width: target.colour.width,
-        pixel_format: target.colour.format,
-        colour_pitch: target.colour.pitch as usize / 4,
-        depth_pitch: target.depth.map_or(0, |d| d.pitch as usize / 4),
     }
 }
 
@@ -735,40 +502,4 @@ fn charge_geometry(counts: &GeometryCounts, draw: &Draw<'_>, account: &mut Accou
     let clocks = 4 * vertices + set_up * counts.primitives + 4 * counts.cuts;
     account.charge(Counter::CyclesGeometry, Clocks(clocks));
     vertices
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::hidden::za::{Background, Grid};
-    use zga_abi::format::{DepthFormat, PixelFormat, ZaPrediction};
-
-    #[test]
-    fn is_fast_of_a_clocked_za_unit_is_not() {
-        let pixels = Setting {
-            test: Some(DepthTest::LESS),
-            format: DepthFormat::default(),
-            interpolation: Interpolation::Flat,
-            shading: None,
-            stencil: None,
-            cuts_segments: false,
-            scissor: Rectangle { x: 0, y: 0, right: 64, bottom: 64 },
-            width: 64,
-            pixel_format: PixelFormat::Xrgb8888,
-            colour_pitch: 64,
-            depth_pitch: 64,
-        };
-        // Blocks as published, which the functional model draws from bins.
-        let path = Path::Za(ZaDraw {
-            pixels,
-            grid: Grid { block: [32, 1], size: [64, 64] },
-            background: Background { pixel: 0, depth: 0 },
-            prediction: ZaPrediction::BlockLength,
-            bypass: true,
-            depth_buffer: true,
-        });
-        assert!(path.is_fast(Fidelity::Functional, false));
-        assert!(!path.is_fast(Fidelity::Functional, true), "no fast way for a stencil test");
-        assert!(!path.is_fast(Fidelity::Clocked, false), "the state machine must be stepped whatever the kernel");
-    }
 }

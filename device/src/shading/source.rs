@@ -37,11 +37,11 @@ impl ColourSource {
         self.position[0]
     }
 
-    /// Whether the vertices run counter-clockwise on the screen, where y goes down.
+    /// The places of the vertices, u.
     #[must_use]
-    pub fn runs_counter_clockwise(&self) -> bool {
-        let [a, b, c] = self.position.map(|place| place.map(i64::from));
-        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) < 0
+    #[inline(always)]
+    pub fn places(&self) -> [[i32; 2]; 3] {
+        self.position
     }
 
     /// The colour of a flat primitive: its first vertex's.

@@ -5,9 +5,11 @@
 
 pub(crate) mod camera;
 mod decal;
+mod fitted;
 
 pub use camera::{Camera, CameraMatrices};
 pub use decal::{Decal, DecalInfo};
+pub use fitted::{Corners, FitInfo, FitView, FittedDecal, Marking};
 
 /// A 4x4 matrix, row-major, for row vectors.
 pub type Matrix = [f32; 16];
@@ -50,6 +52,12 @@ pub enum ViewError {
         /// 2K: the slope must be smaller.
         limit: f64,
     },
+    /// A fitted decal has no plane to be fitted to.
+    #[error("surface {surface} of a fitted decal is none: three corners that do not lie on a line are expected")]
+    NoSurface {
+        /// Its place in the list of surfaces.
+        surface: usize,
+    },
 }
 
 /// Checks that a number is finite.
@@ -57,5 +65,7 @@ pub(crate) fn finite(field: &'static str, found: f64) -> Result<f64, ViewError> 
     if found.is_finite() { Ok(found) } else { Err(ViewError::BadNumber { field, found, expected: "a finite number" }) }
 }
 
+#[cfg(test)]
+mod fitted_tests;
 #[cfg(test)]
 mod tests;

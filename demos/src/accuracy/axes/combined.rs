@@ -9,24 +9,22 @@ use super::super::context::Context;
 use super::super::model;
 use super::super::report::{Axis, Kind, Plot, Section, Series, Table};
 use super::super::verdict::{dominated, figure};
-use super::{EXACT, mesh_name};
+use super::{EXACT, GRIDS, ORDERS, mesh_name};
 use crate::error::Result;
 
 /// Every combination that differs in what is drawn: without a grid there is no order.
 fn combinations() -> Vec<(String, Setting)> {
     let mut all = Vec::new();
-    for (grid, grid_name) in
-        [(Grid::Off, "1 sample"), (Grid::Grid4x4, "4x4"), (Grid::Grid8x4, "8x4"), (Grid::Grid8x8, "8x8")]
-    {
-        for (order, order_name) in Order::ALL.into_iter().zip(["centre", "search", "exhaustive"]) {
+    for (grid, grid_name) in GRIDS {
+        for (order, order_name) in ORDERS {
             if grid == Grid::Off && order != Order::Centre {
                 continue;
             }
+            let samples = if grid == Grid::Off { "1 sample".to_owned() } else { format!("{grid_name} {order_name}") };
             for (bits, fraction) in [16, 24, 31].into_iter().flat_map(|bits| [0, 8, 16, 24].map(|f| (bits, f))) {
                 for coordinate_bits in [4, 8] {
                     let depth = DepthFormat { bits, fraction };
-                    let order_name = if grid == Grid::Off { String::new() } else { format!(" {order_name}") };
-                    let name = format!("{grid_name}{order_name} Z{bits} F{fraction} 1/{}", 1 << coordinate_bits);
+                    let name = format!("{samples} Z{bits} F{fraction} 1/{}", 1 << coordinate_bits);
                     all.push((name, Setting { grid, order, depth, coordinate_bits, ..Setting::best() }));
                 }
             }

@@ -11,7 +11,7 @@ pub(super) mod order;
 pub(super) mod presets;
 pub(super) mod shading;
 
-use zga_tests::harness::Random;
+use zga_tests::harness::{Grid, Order, Random};
 use zga_tests::study::card::{self, Drawn, Setting};
 use zga_tests::study::scene::{Kind, Scene};
 use zga_tests::study::truth::{Truth, truth};
@@ -25,6 +25,13 @@ use crate::picture::Picture;
 const EXACT: u32 = 16;
 /// Pixels of a crop.
 const CROP: [u32; 2] = [32, 24];
+
+/// Grids and what they are called in tables.
+const GRIDS: [(Grid, &str); 4] =
+    [(Grid::Off, "1"), (Grid::Grid4x4, "4x4"), (Grid::Grid8x4, "8x4"), (Grid::Grid8x8, "8x8")];
+/// Orders of fragments and what they are called.
+const ORDERS: [(Order, &str); 3] =
+    [(Order::Centre, "centre"), (Order::Search, "search"), (Order::Exhaustive, "exhaustive")];
 
 /// Settings of an axis on a scene, measured.
 struct Swept {

@@ -9,10 +9,11 @@ use super::super::context::Context;
 use super::super::model;
 use super::super::report::{By, Cell, ErrorFigures, Point, Section, Sweep, Table};
 use super::super::verdict::{figure, sentences};
-use super::{crossing_name, magnified, pictures, price};
+use super::{ORDERS, crossing_name, magnified, pictures, price};
 use crate::error::Result;
 
-const NAMES: [&str; 3] = ["centre", "search", "exhaustive"];
+/// In the order of [`ORDERS`].
+const NAMES: [&str; 3] = [ORDERS[0].1, ORDERS[1].1, ORDERS[2].1];
 
 pub fn section(context: &mut Context<'_>) -> Result<Section> {
     let (scenes, repeats) = context.effort.pick((1, 5), (10, 9));

@@ -14,7 +14,13 @@ use super::super::verdict::sentences;
 use super::{crossing_name, magnified, pictures};
 use crate::error::Result;
 
-/// What is promised of a preset on the random scenes of any seed and the teapot.
+/// What is promised of a preset on the random scenes and the teapot, at the sizes of this section.
+///
+/// Where the bounds come from: errors and clocks of some thousand random triangles hardly depend on the seed, so each bound
+/// lies at least four standard deviations above the mean, over seeds, of the worst figure of a seed. The test measures that
+/// over 4 seeds, with `ZGA_LONG=1` over 32. By Cantelli's inequality a figure of any distribution with such a mean and
+/// deviation is beyond the bound for at most 1 seed in 17. Of every scene whatever nothing can be promised but an error of
+/// at most 255 levels.
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
     /// Which.
@@ -136,26 +142,46 @@ mod tests {
     use super::super::super::context::{Effort, Options};
     use super::*;
 
+    /// Standard deviations between the mean of a figure over seeds and its bound.
+    const DEVIATIONS: f64 = 4.0;
+
+    /// Seeds of this run: 4, and with `ZGA_LONG=1` 32.
+    fn seeds() -> std::ops::RangeInclusive<u64> {
+        let long = std::env::var("ZGA_LONG").is_ok_and(|value| value == "1");
+        1..=if long { 32 } else { 4 }
+    }
+
+    /// The worst error and the most clocks of each preset.
+    fn found(seed: u64) -> [[f64; 2]; 3] {
+        let options = Options { seed, effort: Effort::Quick, size: [160, 120], threads: 1, mesh: None };
+        let mut tell = |_: &str| {};
+        let mut context = Context::new(&options, &mut tell).expect("the teapot");
+        let settings: Vec<(String, Setting)> =
+            Preset::ALL.iter().map(|preset| (preset.name().to_owned(), setting(*preset))).collect();
+        let sweeps: Vec<Sweep> = scenes(&context)
+            .iter()
+            .map(|(name, scene)| pictures(&mut context, name, scene, &settings, By::Mean).sweep)
+            .collect();
+        [0, 1, 2].map(|at| worst(&sweeps, at))
+    }
+
     #[test]
     fn presets_keep_their_promises_and_order_by_error_and_clocks() {
-        for seed in [1, 2] {
-            let options = Options { seed, effort: Effort::Quick, size: [160, 120], threads: 1, mesh: None };
-            let mut tell = |_: &str| {};
-            let mut context = Context::new(&options, &mut tell).expect("the teapot");
-            let settings: Vec<(String, Setting)> =
-                Preset::ALL.iter().map(|preset| (preset.name().to_owned(), setting(*preset))).collect();
-            let all = scenes(&context);
-            let sweeps: Vec<Sweep> = all
-                .iter()
-                .map(|(name, scene)| pictures(&mut context, name, scene, &settings, By::Mean).sweep)
-                .collect();
-            let found = [0, 1, 2].map(|at| worst(&sweeps, at));
-            println!("{found:?}");
-            for ([error, clocks], bounds) in found.iter().zip(BOUNDS) {
-                assert!(*error <= bounds.mean_error && *clocks <= bounds.clocks, "{bounds:?}: {error}, {clocks}");
+        let all: Vec<[[f64; 2]; 3]> = seeds().map(found).collect();
+        for (at, bounds) in BOUNDS.iter().enumerate() {
+            for (figure, bound) in [bounds.mean_error, bounds.clocks].into_iter().enumerate() {
+                let figures = || all.iter().map(|seed| seed[at][figure]);
+                let mean = figures().sum::<f64>() / all.len() as f64;
+                let variance = figures().map(|x| (x - mean).powi(2)).sum::<f64>() / (all.len() - 1) as f64;
+                let most = figures().fold(0.0, f64::max);
+                println!("{bounds:?}: mean {mean}, deviation {}, most {most}", variance.sqrt());
+                assert!(most <= bound, "{bounds:?}: {most}");
+                assert!(mean + DEVIATIONS * variance.sqrt() <= bound, "{bounds:?}: {mean} +- {}", variance.sqrt());
             }
-            assert!(found[0][0] > found[1][0] && found[1][0] > found[2][0]);
-            assert!(found[0][1] < found[1][1] && found[1][1] < found[2][1]);
+        }
+        for [draft, standard, exact] in all {
+            assert!(draft[0] > standard[0] && standard[0] > exact[0]);
+            assert!(draft[1] < standard[1] && standard[1] < exact[1]);
         }
     }
 }

@@ -11,6 +11,7 @@ use super::tile::{TILE, Tile, TileCounts};
 use super::{DepthTest, kernel};
 use crate::built::{Called, Key, PunchThroughKey, ShadingKey, StencilKey};
 use crate::geometry::plane::below;
+use crate::geometry::triangle::runs_counter_clockwise;
 use crate::hidden::stencil::{StencilRows, Stencilled};
 use crate::hidden::za::band::TileBlocks;
 use crate::pipeline::bands::{Plane, Sight, Surfaces};
@@ -267,7 +268,7 @@ impl Setting {
                 continue;
             };
             let holes = has_holes.then(|| self.hole_plane(bin, index)).flatten();
-            let front = bin.triangles.is_empty() || source.runs_counter_clockwise();
+            let front = bin.triangles.is_empty() || runs_counter_clockwise(source.places());
             let primitive = StencilledPrimitive {
                 stencil: Stencilled { rule: *rule, front },
                 holes: holes.as_ref(),

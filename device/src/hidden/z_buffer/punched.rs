@@ -8,7 +8,7 @@
 use super::DepthTest;
 use super::tile::Tile;
 use crate::geometry::line::Line;
-use crate::geometry::plane::{Axis, DepthPlane};
+use crate::geometry::plane::DepthPlane;
 use crate::geometry::triangle::Triangle;
 use crate::shading::parameters::LANES;
 use crate::shading::plane::ColourPlane;
@@ -92,30 +92,17 @@ impl Punched<'_> {
                     self.win(x + lane as i32, y, depths[lane], tile);
                 }
             }
-            if let Some(row) = tile.tokens.get_mut((y - tile.band_y) as usize) {
-                *row += tokens;
-            }
+            tile.count_tokens(y, tokens);
         }
     }
 
     /// A line.
     pub fn line(&self, line: &Line, tile: &mut Tile<'_>) {
-        let (along, across) = if line.axis == Axis::X { (tile.columns, tile.rows) } else { (tile.rows, tile.columns) };
-        let (first, beyond) = (line.steps[0].max(along[0]), line.steps[1].min(along[1]));
-        if first >= beyond {
+        if tile.line_steps(line).is_empty() {
             return;
         }
         tile.counts.rows_touched(tile.rows[0], tile.rows[1]);
-        for step in first..beyond {
-            let at = line.minor_at(step);
-            if !(across[0]..across[1]).contains(&at) {
-                continue;
-            }
-            let (x, y) = if line.axis == Axis::X { (step, at) } else { (at, step) };
-            let begins = line.axis == Axis::Y
-                || step == line.steps[0]
-                || step == tile.scissor_x
-                || line.minor_at(step - 1) != at;
+        for ([x, y], begins) in tile.line_pixels(line) {
             self.pixel([x, y], depth(&line.plane, x, y, self.below), begins, tile);
         }
     }
@@ -135,9 +122,7 @@ impl Punched<'_> {
         let hole = self.colours.is_hole(x, y);
         tile.counts.holes += u64::from(hole);
         let token = if self.cuts { !hole && (begins || self.colours.is_hole(x - 1, y)) } else { begins };
-        if let Some(row) = tile.tokens.get_mut((y - tile.band_y) as usize) {
-            *row += u32::from(token);
-        }
+        tile.count_tokens(y, u32::from(token));
         if !hole && self.passes(x, y, z, tile) {
             self.win(x, y, z, tile);
         }

@@ -8,7 +8,6 @@
 use super::DepthTest;
 use super::tile::{TILE, Tile};
 use crate::geometry::line::Line;
-use crate::geometry::plane::Axis;
 use crate::geometry::triangle::Triangle;
 use crate::hidden::stencil::{StencilRows, Stencilled};
 use crate::shading::plane::ColourPlane;
@@ -94,30 +93,17 @@ impl StencilledPrimitive<'_> {
                 inside = solid;
                 value = value.wrapping_add(t.plane.dx);
             }
-            if let Some(row) = tile.tokens.get_mut((y - tile.band_y) as usize) {
-                *row += tokens;
-            }
+            tile.count_tokens(y, tokens);
         }
     }
 
     /// A line.
     pub fn line(&self, line: &Line, tile: &mut Tile<'_>, values: &mut StencilRows<'_>) {
-        let (along, across) = if line.axis == Axis::X { (tile.columns, tile.rows) } else { (tile.rows, tile.columns) };
-        let (first, beyond) = (line.steps[0].max(along[0]), line.steps[1].min(along[1]));
-        if first >= beyond {
+        if tile.line_steps(line).is_empty() {
             return;
         }
         self.touch(tile.rows[0], tile.rows[1], tile);
-        for step in first..beyond {
-            let at = line.minor_at(step);
-            if !(across[0]..across[1]).contains(&at) {
-                continue;
-            }
-            let (x, y) = if line.axis == Axis::X { (step, at) } else { (at, step) };
-            let begins = line.axis == Axis::Y
-                || step == line.steps[0]
-                || step == tile.scissor_x
-                || line.minor_at(step - 1) != at;
+        for ([x, y], begins) in tile.line_pixels(line) {
             let z = line.plane.stored(line.plane.value(x, y), self.below);
             self.pixel([x, y], z, begins, tile, values);
         }
@@ -136,8 +122,6 @@ impl StencilledPrimitive<'_> {
     fn pixel(&self, [x, y]: [i32; 2], z: i32, begins: bool, tile: &mut Tile<'_>, values: &mut StencilRows<'_>) {
         let solid = !self.fragment([x, y], z, tile, values);
         let token = if self.cuts { solid && (begins || self.is_hole(x - 1, y)) } else { begins };
-        if let Some(row) = tile.tokens.get_mut((y - tile.band_y) as usize) {
-            *row += u32::from(token);
-        }
+        tile.count_tokens(y, u32::from(token));
     }
 }

@@ -7,6 +7,7 @@ use crate::geometry::plane::Axis;
 use crate::geometry::triangle::WALK;
 use crate::hidden::stencil::StencilCounts;
 use crate::pipeline::bands::Counts;
+use std::ops::Range;
 
 /// Width and height of a tile in pixels.
 pub const TILE: usize = 64;
@@ -100,29 +101,45 @@ impl Tile<'_> {
         self.counts.passed += u64::from(pass);
     }
 
-    /// Counts the plane segments of a line that begin in the tile: one a row, where the first pixel inside the
-    /// scissor lies.
+    /// Steps of a line along its major axis that the tile may have pixels of.
+    #[inline(always)]
+    pub fn line_steps(&self, line: &Line) -> Range<i32> {
+        let along = if line.axis == Axis::X { self.columns } else { self.rows };
+        line.steps[0].max(along[0])..line.steps[1].min(along[1])
+    }
+
+    /// The pixels of a line in the tile, and whether its segment on that row begins there: no pixel of the line inside the
+    /// scissor stands left of it.
+    pub fn line_pixels<'l>(&self, line: &'l Line) -> impl Iterator<Item = ([i32; 2], bool)> + use<'l> {
+        let across = if line.axis == Axis::X { self.rows } else { self.columns };
+        let scissor_x = self.scissor_x;
+        self.line_steps(line).filter_map(move |step| {
+            let at = line.minor_at(step);
+            let begins =
+                || line.axis == Axis::Y || step == line.steps[0] || step == scissor_x || line.minor_at(step - 1) != at;
+            let pixel = if line.axis == Axis::X { [step, at] } else { [at, step] };
+            (across[0]..across[1]).contains(&at).then(|| (pixel, begins()))
+        })
+    }
+
+    /// Counts plane segments that begin on row `y`, if the path asks.
+    #[inline(always)]
+    pub fn count_tokens(&mut self, y: i32, begun: u32) {
+        if let Some(row) = self.tokens.get_mut((y - self.band_y) as usize) {
+            *row += begun;
+        }
+    }
+
+    /// Counts the plane segments of a line that begin in the tile.
     #[cold]
     fn line_tokens(&mut self, line: &Line) {
-        let (along, across) = if line.axis == Axis::X { (self.columns, self.rows) } else { (self.rows, self.columns) };
-        for step in line.steps[0].max(along[0])..line.steps[1].min(along[1]) {
-            let at = line.minor_at(step);
-            let begins = line.axis == Axis::Y
-                || step == line.steps[0]
-                || step == self.scissor_x
-                || line.minor_at(step - 1) != at;
-            if begins && (across[0]..across[1]).contains(&at) {
-                let row = if line.axis == Axis::X { at } else { step };
-                self.tokens[(row - self.band_y) as usize] += 1;
-            }
-        }
+        self.line_pixels(line).for_each(|([_, y], begins)| self.count_tokens(y, u32::from(begins)));
     }
 
     /// Tests a line's steps that fall into the tile.
     pub fn line<const MODE: u8>(&mut self, line: &Line, id: u32, test: DepthTest, below: u32) {
-        let (along, across) = if line.axis == Axis::X { (self.columns, self.rows) } else { (self.rows, self.columns) };
-        let first = line.steps[0].max(along[0]);
-        let beyond = line.steps[1].min(along[1]);
+        let across = if line.axis == Axis::X { self.rows } else { self.columns };
+        let Range { start: first, end: beyond } = self.line_steps(line);
         if first >= beyond {
             return;
         }
@@ -153,9 +170,7 @@ impl Tile<'_> {
         let [x, y] = pixel;
         if (self.columns[0]..self.columns[1]).contains(&x) && (self.rows[0]..self.rows[1]).contains(&y) {
             self.counts.rows_touched(y, y + 1);
-            if let Some(tokens) = self.tokens.get_mut((y - self.band_y) as usize) {
-                *tokens += 1;
-            }
+            self.count_tokens(y, 1);
             self.fragment::<MODE>(x, y, z, id, test);
         }
     }

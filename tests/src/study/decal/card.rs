@@ -1,11 +1,11 @@
 //! The scenes through driver and card, with each cure for buried markings.
 
-use zga_abi::format::DepthFunction;
+use zga_abi::format::{DepthFormat, DepthFunction};
 use zga_device::{Card, CardBus, CardOptions};
 use zga_driver::{Camera, Driver, DriverError, Target, TargetOptions, Vertex};
 
 use super::exact::Truth;
-use super::scene::{SIDE, Scene};
+use super::scene::{Marking, Place, SIDE, Scene};
 
 /// What is done so that markings are not buried.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +14,8 @@ pub enum Cure {
     Nothing,
     /// The decal transform moves markings toward the viewer, for surfaces up to this slope.
     Decal(f64),
+    /// The decal transform fitted to the marking's own surfaces, with this slope as its limit.
+    Fitted(f64),
     /// The decal transform moves surfaces away from the viewer, by the slope's negative.
     Surface(f64),
     /// The usual polygon offset on surfaces: `factor` times the steepest gradient of depth over a pixel, plus `units`
@@ -46,10 +48,21 @@ impl Desk {
     /// When there is no card to be had, which is a fault of the machine.
     #[must_use]
     pub fn new() -> Self {
+        Self::with(DepthFormat::default())
+    }
+
+    /// The same with depths of a format.
+    ///
+    /// # Panics
+    /// As [`Desk::new`].
+    #[must_use]
+    pub fn with(depth: DepthFormat) -> Self {
         let options = CardOptions { threads: 1, ..CardOptions::default() };
         let card = Card::power_on(options).unwrap_or_else(|error| panic!("{error}"));
         let mut driver = Driver::open(card.bus()).unwrap_or_else(|error| panic!("{error}"));
-        let target = driver.create_target(TargetOptions::new(SIDE, SIDE)).unwrap_or_else(|error| panic!("{error}"));
+        let target = driver
+            .create_target(TargetOptions { depth: Some(depth), ..TargetOptions::new(SIDE, SIDE) })
+            .unwrap_or_else(|error| panic!("{error}"));
         Self { _card: card, driver, target }
     }
 
@@ -69,29 +82,23 @@ impl Desk {
                 driver.draw_triangles(&offset(scene, truth, factor, units))?;
                 driver.set_camera(camera)?;
             }
-            Cure::Nothing | Cure::Decal(_) => driver.draw_triangles(&surfaces(scene))?,
+            Cure::Nothing | Cure::Decal(_) | Cure::Fitted(_) => driver.draw_triangles(&surfaces(scene))?,
         }
         driver.set_depth_function(DepthFunction::LessEqual);
-        match cure {
-            Cure::Decal(slope) => driver.decal(slope, |driver| markings(driver, scene))?,
-            _ => markings(driver, scene)?,
-        }
+        cured_markings(driver, scene, cure)?;
         driver.end_scene()?;
         driver.present(&self.target)?;
         Ok(driver.capture()?.pixels.into_iter().map(|pixel| pixel & 0x00FF_FFFF).collect())
     }
 
-    /// Draws the markings alone, with and without the decal transform: which pixels they have.
-    pub(super) fn markings_alone(&mut self, scene: &Scene, slope: Option<f64>) -> Result<Vec<bool>, DriverError> {
+    /// Draws the markings alone, with a cure: which pixels they have.
+    pub(super) fn markings_alone(&mut self, scene: &Scene, cure: Cure) -> Result<Vec<bool>, DriverError> {
         let driver = &mut self.driver;
         driver.set_camera(scene.projection.camera())?;
         driver.begin_scene(&self.target)?;
         driver.clear(Some(BACKGROUND), Some(1.0))?;
         driver.set_depth_function(DepthFunction::Always);
-        match slope {
-            Some(slope) => driver.decal(slope, |driver| markings(driver, scene))?,
-            None => markings(driver, scene)?,
-        }
+        cured_markings(driver, scene, cure)?;
         driver.end_scene()?;
         driver.present(&self.target)?;
         Ok(driver.capture()?.pixels.into_iter().map(|pixel| pixel & 0x00FF_FFFF == MARKING).collect())
@@ -104,10 +111,26 @@ impl Default for Desk {
     }
 }
 
-fn markings(driver: &mut Driver<CardBus>, scene: &Scene) -> Result<(), DriverError> {
+/// Draws the markings with what a cure does to them.
+fn cured_markings(driver: &mut Driver<CardBus>, scene: &Scene, cure: Cure) -> Result<(), DriverError> {
+    match cure {
+        Cure::Decal(slope) => driver.decal(slope, |driver| markings(driver, &scene.markings)),
+        Cure::Fitted(slope) => {
+            // Those with the same carriers are neighbours in the list, but those of a body's edges.
+            for group in scene.markings.chunk_by(|a, b| a.carriers == b.carriers) {
+                let surfaces: Vec<[Place; 3]> = group[0].carriers.iter().map(|&face| scene.surfaces[face]).collect();
+                driver.decal_on(slope, &surfaces, |driver| markings(driver, group))?;
+            }
+            Ok(())
+        }
+        Cure::Nothing | Cure::Surface(_) | Cure::Offset { .. } => markings(driver, &scene.markings),
+    }
+}
+
+fn markings(driver: &mut Driver<CardBus>, markings: &[Marking]) -> Result<(), DriverError> {
     let [_, r, g, b] = MARKING.to_be_bytes();
     let vertices = |count: usize| -> Vec<Vertex> {
-        let some = scene.markings.iter().filter(|marking| marking.ends.len() == count);
+        let some = markings.iter().filter(|marking| marking.ends.len() == count);
         some.flat_map(|marking| &marking.ends).map(|&place| Vertex::new(place, [r, g, b, 255])).collect()
     };
     driver.draw_lines(&vertices(2))?;

@@ -7,7 +7,8 @@
 //! * The pixel shows what is at its centre c, up to half a pixel away. Where something else decides there than at p, the
 //!   border of a surface runs between the two, and any answer is right: *undecided*, and not counted. That is so if p is
 //!   hidden but no triangle that hides it, nor one beside it, covers c; or if p is not hidden, but a triangle that does
-//!   not cover p, shares no corner with a carrier, and is nearer than p, covers c.
+//!   not cover p, shares no corner with a carrier, and is nearer than p, covers c. Covers: as it is and as its corners are
+//!   snapped, of which the card knows the latter alone; where the two differ at c, so do right answers.
 //!
 //! Signs and comparisons are floats where they are beyond a bound of their error, and rationals where they are not.
 
@@ -129,6 +130,8 @@ pub(super) struct Face {
     high: [f64; 2],
     /// Seen from its edge: it covers nothing.
     flat: bool,
+    /// Corners as the card has them, u.
+    snapped: [[i64; 2]; 3],
 }
 
 /// Side of a directed edge that a point is on.
@@ -155,7 +158,8 @@ impl Face {
         };
         let (low, high) = ([0, 1].map(|axis| bound(axis, f64::min)), [0, 1].map(|axis| bound(axis, f64::max)));
         let flat = turn(&corners[0].exact, &corners[1].exact, &corners[2].exact) == Ordering::Equal;
-        Self { corners, low, high, flat }
+        let snapped = corners.each_ref().map(Spot::snapped).map(|corner| [corner.x.into(), corner.y.into()]);
+        Self { corners, low, high, flat, snapped }
     }
 
     /// Whether a point lies in the triangle or on its border.
@@ -167,6 +171,17 @@ impl Face {
         let [a, b, c] = &self.corners;
         let sides = [side(a, b, at), side(b, c, at), side(c, a, at)];
         !(sides.contains(&Ordering::Less) && sides.contains(&Ordering::Greater))
+    }
+
+    /// Whether a pixel's centre lies in the snapped triangle or on its border.
+    fn covers_snapped(&self, pixel: [u32; 2]) -> bool {
+        let centre = pixel.map(|place| i64::from(place) * 256 + 128);
+        let side = |from: [i64; 2], to: [i64; 2]| {
+            ((to[0] - from[0]) * (centre[1] - from[1]) - (to[1] - from[1]) * (centre[0] - from[0])).signum()
+        };
+        let [a, b, c] = self.snapped;
+        let sides = [side(a, b), side(b, c), side(c, a)];
+        sides != [0; 3] && !(sides.contains(&1) && sides.contains(&-1))
     }
 
     /// The plane as depth = z_a + g . (p - a).
@@ -266,14 +281,17 @@ impl Truth {
         let hides = |&face: &usize| self.faces[face].covers(at) && self.faces[face].nearer_at(at);
         let hiding: Vec<usize> = foreign().filter(hides).collect();
         if !hiding.is_empty() {
-            let at_centre = |face: usize| self.faces[face].covers(&centre);
+            let at_centre = |face: usize| self.faces[face].covers(&centre) && self.faces[face].covers_snapped(pixel);
             let held = hiding.iter().any(|&face| self.beside[face].iter().any(|&beside| at_centre(beside)));
             return if held { Answer::Hidden } else { Answer::Undecided };
         }
         let attached = |face: usize| carriers.iter().any(|&carrier| self.beside[carrier].contains(&face));
         let intrudes = |face: usize| {
             let shape = &self.faces[face];
-            shape.covers(&centre) && !shape.covers(at) && !attached(face) && shape.nearer_at(&centre)
+            (shape.covers(&centre) || shape.covers_snapped(pixel))
+                && !shape.covers(at)
+                && !attached(face)
+                && shape.nearer_at(&centre)
         };
         if foreign().any(intrudes) { Answer::Undecided } else { Answer::Seen }
     }

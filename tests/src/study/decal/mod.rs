@@ -9,7 +9,7 @@
 //! | `scene` | tilted patches with lines, a curve and points, with and without a sheet in front; a floor; round bodies near to far |
 //! | `exact` | what must be seen, in rationals |
 //! | [`survey`] | the scenes of the report, and sums over them |
-//! | `card` | the same scenes by driver and card: decals of any slope, none, surfaces moved away, polygon offset |
+//! | `card` | the same scenes by driver and card: decals of any slope and fitted ones, none, surfaces moved away, polygon offset |
 //!
 //! Source of the cure: JP 2579421 B2 / US 5,379,370. Polygon offset: OpenGL 4.6 (core profile), section 14.6.5.
 
@@ -147,18 +147,18 @@ impl Subject {
         counts
     }
 
-    /// Pixels of the card's markings that are not the oracle's, without a decal and with one of this slope.
+    /// Pixels of the card's markings that are not the oracle's: without a decal, with one of this slope, with one fitted.
     ///
     /// # Errors
     /// As [`Subject::draw`].
-    pub fn strays(&self, desk: &mut Desk, slope: f64) -> Result<[usize; 2], DriverError> {
+    pub fn strays(&self, desk: &mut Desk, slope: f64) -> Result<[usize; 3], DriverError> {
         let mut mine = vec![false; (SIDE * SIDE) as usize];
         self.pixels.iter().for_each(|fragment| mine[place(fragment.pixel)] = true);
-        let mut differ = |slope| -> Result<usize, DriverError> {
-            let cards = desk.markings_alone(&self.scene, slope)?;
+        let mut differ = |cure| -> Result<usize, DriverError> {
+            let cards = desk.markings_alone(&self.scene, cure)?;
             Ok(cards.iter().zip(&mine).filter(|(card, mine)| card != mine).count())
         };
-        Ok([differ(None)?, differ(Some(slope))?])
+        Ok([differ(Cure::Nothing)?, differ(Cure::Decal(slope))?, differ(Cure::Fitted(slope))?])
     }
 }
 
@@ -178,5 +178,7 @@ fn either(a: Fragment, b: Fragment) -> Fragment {
     }
 }
 
+#[cfg(test)]
+mod fitted_tests;
 #[cfg(test)]
 mod tests;

@@ -91,6 +91,20 @@ impl Scene {
         vec![first, first + 1]
     }
 
+    /// Moves everything along the picture by pixels at the place of each vertex, so that orthographic scenes leave the
+    /// card's grid; markings stay in their carriers, up to the rounding of positions.
+    #[must_use]
+    pub fn shifted(mut self, by: [f64; 2]) -> Self {
+        let projection = self.projection;
+        let shift = |place: &mut Place| {
+            let pixel = projection.pixel(-f64::from(place[2]));
+            (0..2).for_each(|axis| place[axis] = (f64::from(place[axis]) + by[axis] * pixel) as f32);
+        };
+        self.surfaces.iter_mut().flatten().for_each(shift);
+        self.markings.iter_mut().flat_map(|marking| &mut marking.ends).for_each(shift);
+        self
+    }
+
     fn line(&mut self, ends: [Place; 2], carriers: &[usize]) {
         self.markings.push(Marking { ends: ends.to_vec(), carriers: carriers.to_vec() });
     }

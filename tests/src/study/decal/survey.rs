@@ -7,6 +7,10 @@ use super::{Counts, Cure, Desk, Patch, Projection, Scene, Subject, bodies, floor
 /// Slope that the study asks about.
 pub const LIMIT: f64 = 8.0;
 
+/// Factors of slope-scaled polygon offsets that are tried; markings in all directions need 1/2 of the steeper gradient,
+/// points up to 1.
+pub const FACTORS: &[f64] = &[0.25, 0.5, 0.55, 0.6, 0.7, 0.8, 0.85, 0.9, 1.0, 1.5, 2.0, 4.0];
+
 /// How many scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
@@ -60,6 +64,22 @@ pub fn scenes(projection: Projection, extent: Extent) -> Vec<Scene> {
     scenes.extend(sheets.iter().flat_map(|&tilt| covered(projection, tilt, extent)));
     scenes.extend([floor(projection), bodies(projection)]);
     scenes
+}
+
+/// The slope-scaled offset that is best by hindsight: of [`FACTORS`] with 1 unit the one that shows the fewest through of
+/// those that bury no more than `buried` pixels, and what it makes of the subjects.
+///
+/// # Errors
+/// What the driver refuses.
+pub fn best_offset(subjects: &[Subject], desk: &mut Desk, buried: u64) -> Result<Option<(f64, Counts)>, DriverError> {
+    let mut best: Option<(f64, Counts)> = None;
+    for &factor in FACTORS {
+        let found = total(subjects, desk, Cure::Offset { factor, units: 1.0 })?;
+        if found.buried <= buried && best.is_none_or(|(_, best)| found.shown < best.shown) {
+            best = Some((factor, found));
+        }
+    }
+    Ok(best)
 }
 
 /// What a cure makes of all the subjects together, with [`LIMIT`].

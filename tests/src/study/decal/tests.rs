@@ -100,7 +100,7 @@ fn markings_have_the_oracles_pixels_with_and_without_a_decal() {
     let mut desk = Desk::new();
     for projection in Projection::ALL {
         for scene in [bodies(projection), floor(projection)] {
-            assert_eq!(Subject::new(scene).strays(&mut desk, LIMIT).expect("drawn"), [0, 0], "{projection:?}");
+            assert_eq!(Subject::new(scene).strays(&mut desk, LIMIT).expect("drawn"), [0; 3], "{projection:?}");
         }
     }
 }
