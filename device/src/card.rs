@@ -24,7 +24,8 @@ use std::sync::atomic::Ordering::SeqCst;
 use zga_abi::bus::INTERRUPT_FENCE;
 use zga_abi::{Counter, Fault, Reg, Units};
 use zga_firmware::checked::{
-    Clear, Combine, CombineSource, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words,
+    Clear, Combine, CombineSource, Convert, Copy, CopyList, Draw, DrawState, ExpandList, Fill, FillList, Rows,
+    SegmentList, Shadow, Stretch, Target, Words,
 };
 use zga_firmware::{Hardware, Processor, ProcessorState, Stopped};
 
@@ -320,6 +321,30 @@ impl Hardware for Wiring<'_> {
         let Blocks { bitmap, account, .. } = &mut *self.blocks;
         let memory = self.memory.using(stretch.source.bytes(), stretch.destination.bytes(), account);
         bitmap.stretch(memory, stretch, account);
+    }
+
+    fn fill_list(&mut self, fill: &FillList<'_>) {
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        let memory = self.memory.using(NOTHING, fill.canvas.surface.bytes(), account);
+        bitmap.fill_list(memory, fill, account);
+    }
+
+    fn copy_list(&mut self, copy: &CopyList<'_>) {
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        let memory = self.memory.using(copy.source.bytes(), copy.canvas.surface.bytes(), account);
+        bitmap.copy_list(memory, copy, account);
+    }
+
+    fn segments(&mut self, segments: &SegmentList<'_>) {
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        let memory = self.memory.using(NOTHING, segments.canvas.surface.bytes(), account);
+        bitmap.segments(memory, segments, account);
+    }
+
+    fn expand(&mut self, expand: &ExpandList<'_>) {
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        let memory = self.memory.using(NOTHING, expand.canvas.surface.bytes(), account);
+        bitmap.expand(memory, expand, account);
     }
 
     fn upload(&mut self, rows: &Rows, words: &[u32]) {

@@ -14,7 +14,7 @@ use crate::probe::Probe;
 use crate::probe::account::Account;
 use crate::probe::snapshot::Snapshot;
 use crate::scanout::Scanout;
-use crate::scanout::monitor::Monitor;
+use crate::scanout::monitor::{Connector, Monitor};
 use crate::subpixel::map::SubpixelMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -113,6 +113,12 @@ impl Card {
     #[must_use]
     pub fn map(&self) -> MappedMemory {
         MappedMemory::new(&self.backplane.memory)
+    }
+
+    /// Where displays are plugged in, for who does so later or from another thread.
+    #[must_use]
+    pub fn connector(&self) -> Connector {
+        Connector::new(Arc::clone(&self.backplane.cable))
     }
 
     /// Everything the card holds, between two packets. Work goes on afterwards.

@@ -115,5 +115,5 @@ pub use memory::MappedMemory;
 pub use pipeline::Kernel;
 pub use probe::account::Clocks;
 pub use probe::snapshot::Snapshot;
-pub use scanout::monitor::{Frame, Monitor};
+pub use scanout::monitor::{Connector, Frame, Monitor};
 pub use subpixel::map::{Reason, SubpixelMap};

@@ -138,21 +138,55 @@ pub enum ImageError {
     /// A stretch would write to its own source.
     #[error("stretch: what is written would lie in its own source, copy that first")]
     Overlap,
+    /// A bitmap has too few bytes.
+    #[error("a bitmap of {width} x {height} pixels has {found} bytes, {needed} are needed")]
+    Bits {
+        /// Pixels.
+        width: u16,
+        /// Pixels.
+        height: u16,
+        /// Bytes that it needs.
+        needed: usize,
+        /// Bytes given.
+        found: usize,
+    },
+    /// An upload does not begin and end at whole words.
+    #[error("upload of {width} pixels of {pixel} bytes at column {x}: both must be multiples of 4 bytes")]
+    Unaligned {
+        /// First column.
+        x: u32,
+        /// Pixels of a row.
+        width: u32,
+        /// Bytes of a pixel.
+        pixel: u32,
+    },
+    /// An upload has too few bytes, or rows that run into each other.
+    #[error("upload of {rows} rows of {row_bytes} bytes, {stride} from one to the next: {found} bytes do not fit that")]
+    Rows {
+        /// Bytes of a row.
+        row_bytes: usize,
+        /// Bytes from a row to the next.
+        stride: usize,
+        /// Rows.
+        rows: u32,
+        /// Bytes given.
+        found: usize,
+    },
 }
 
 /// A drawable as packets have it.
 #[derive(Clone, Copy)]
-struct Surface {
-    base: u32,
-    pitch: u32,
-    width: u32,
-    height: u32,
-    format: BitmapFormat,
+pub(crate) struct Surface {
+    pub(crate) base: u32,
+    pub(crate) pitch: u32,
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) format: BitmapFormat,
 }
 
 impl Surface {
     /// Refuses a rectangle that reaches beyond.
-    fn hold(&self, call: &'static str, side: &'static str, rectangle: Rectangle) -> Result<(), ImageError> {
+    pub(crate) fn hold(&self, call: &'static str, side: &'static str, rectangle: Rectangle) -> Result<(), ImageError> {
         let &Surface { width, height, .. } = self;
         let holds = rectangle.right <= width && rectangle.bottom <= height;
         if holds { Ok(()) } else { Err(ImageError::Outside { call, side, rectangle, width, height }) }
@@ -160,7 +194,7 @@ impl Surface {
 }
 
 /// Width and height; `None` if it is empty.
-fn size(rectangle: Rectangle) -> Option<[u32; 2]> {
+pub(crate) fn size(rectangle: Rectangle) -> Option<[u32; 2]> {
     let Rectangle { x, y, right, bottom } = rectangle;
     let size = [right.checked_sub(x)?, bottom.checked_sub(y)?];
     size.into_iter().all(|pixels| pixels > 0).then_some(size)
@@ -387,7 +421,7 @@ impl<B: Bus> Driver<B> {
     }
 
     /// Where a drawable lies.
-    fn surface(&self, call: &'static str, drawable: Drawable<'_>) -> Result<Surface, DriverError> {
+    pub(crate) fn surface(&self, call: &'static str, drawable: Drawable<'_>) -> Result<Surface, DriverError> {
         match drawable {
             Drawable::Image(image) => {
                 let &Image { ref memory, pitch, width, height, format } = image;

@@ -67,7 +67,7 @@ pub struct Driver<B: Bus> {
     /// Freed, but the card may still use it until the fence with this number.
     leaving: Vec<(u32, Allocation)>,
     warnings: Vec<Warning>,
-    payload: Vec<u32>,
+    pub(crate) payload: Vec<u32>,
 }
 
 impl<B: Bus> Driver<B> {
@@ -296,6 +296,11 @@ impl<B: Bus> Driver<B> {
     /// Encodes a packet.
     pub(crate) fn encode(&mut self, opcode: Opcode, parts: &[&[u32]]) -> Result<(), DriverError> {
         self.queue.packet(&mut self.bus, opcode, parts)
+    }
+
+    /// Encodes a packet whose payload `write` appends; it is not longer than [`Queue::max_packet`].
+    pub(crate) fn encode_with(&mut self, opcode: Opcode, write: impl FnOnce(&mut Vec<u32>)) -> Result<(), DriverError> {
+        self.queue.packet_with(&mut self.bus, opcode, write)
     }
 
     /// Encodes a packet that needs a scene. An error in `sent`, of the sending of its registers, does not keep it back:

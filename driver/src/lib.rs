@@ -62,6 +62,7 @@ mod effects;
 mod error;
 mod hidden;
 mod info;
+mod lists;
 pub mod memory;
 mod preset;
 mod probe;
@@ -84,6 +85,7 @@ pub use effects::{
 pub use error::DriverError;
 pub use hidden::{SystolicVariant, ZaSettings};
 pub use info::{CardInfo, Counters};
+pub use lists::{BitmapGlyph, Canvas, ClipBox, ListRectangle, Point, Segment};
 pub use memory::{Alignment, Allocation};
 pub use preset::Preset;
 pub use probe::PixelHistory;

@@ -3,6 +3,11 @@
 //! Invariants hold by construction in [`crate::Processor`]: every address range lies in video
 //! memory, every alignment is right, every enumeration has a meaning. Units do not check again.
 
+mod lists;
+
+pub(crate) use lists::are_bitmaps;
+pub use lists::{Bitmap, Canvas, ClipBox, CopyList, ExpandList, FillList, ListRectangle, Point, Segment, SegmentList};
+
 use core::ops::Range;
 use zga_abi::Effects;
 use zga_abi::format::{

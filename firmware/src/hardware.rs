@@ -1,6 +1,9 @@
 //! The card's units as the firmware sees them.
 
-use crate::checked::{Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words};
+use crate::checked::{
+    Clear, Combine, Convert, Copy, CopyList, Draw, DrawState, ExpandList, Fill, FillList, Rows, SegmentList, Shadow,
+    Stretch, Target, Words,
+};
 use zga_abi::{Reg, Units};
 
 /// Why a unit stopped before its work was done.
@@ -63,6 +66,18 @@ pub trait Hardware {
 
     /// Stretches a rectangle to another size.
     fn stretch(&mut self, stretch: &Stretch);
+
+    /// Fills rectangles.
+    fn fill_list(&mut self, fill: &FillList<'_>);
+
+    /// Copies rectangles.
+    fn copy_list(&mut self, copy: &CopyList<'_>);
+
+    /// Draws lines of single pixels.
+    fn segments(&mut self, segments: &SegmentList<'_>);
+
+    /// Draws bitmaps of 1 bit a pixel.
+    fn expand(&mut self, expand: &ExpandList<'_>);
 
     /// Writes `words` to rows in video memory; `words` has `rows.words * rows.rows` of them.
     fn upload(&mut self, rows: &Rows, words: &[u32]);

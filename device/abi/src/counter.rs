@@ -113,4 +113,7 @@ counters! {
     StencilFailed "stencil.failed" "Fragments among them that failed the stencil test.",
     StencilShadowed "stencil.shadowed" "Pixels that the shadow bit darkened.",
     ScanoutCursorPixels "scanout.cursor_pixels" "Pixels of the cursor put out over the frame.",
+    BitmapEntries "bitmap.entries" "Entries of lists: rectangles, segments, bitmaps.",
+    BitmapSegmentPixels "bitmap.segment_pixels" "Pixels that segments lit.",
+    BitmapExpanded "bitmap.expanded" "Pixels that bitmaps of 1 bit a pixel covered, drawn or not.",
 }

@@ -74,6 +74,14 @@ opcodes! {
     Convert = 0x26 "CONVERT" "source format, source base, source pitch, x, y, destination format, destination base, destination pitch, x, y, width, height",
     /// Stretches a rectangle over a whole of other size and writes a part of it, whose first pixel goes to x, y; source and part share no byte.
     Stretch = 0x27 "STRETCH" "filter, source format, source base, source pitch, x, y, width, height, destination format, destination base, destination pitch, x, y, width, height, whole width, whole height, part x, part y",
+    /// Fills rectangles of a surface through a raster operation, each through each clip box. Entries as in [`list`]: x, y, width, height.
+    FillList = 0x28 "FILL_LIST" "base, pitch, format, size, operation, planes, origin, clips, value, clip boxes and rectangles ...",
+    /// Copies rectangles through a raster operation from where the offset leads in a source of the same format, each through each clip box; each is read before it is written. Pixels without a source stay. Entries as of FILL_LIST.
+    CopyList = 0x29 "COPY_LIST" "base, pitch, format, size, operation, planes, origin, clips, source base, source pitch, source size, offset x, offset y, clip boxes and rectangles ...",
+    /// Draws lines of single pixels through a raster operation, each through each clip box. Entries as in [`list`]: x1, y1, x2, y2, or of a strip x, y. Flags as in [`SegmentFlags`].
+    Segments = 0x2A "SEGMENTS" "base, pitch, format, size, operation, planes, origin, clips, value, flags, clip boxes and segments ...",
+    /// Draws bitmaps of 1 bit a pixel in two values through a raster operation, each through each clip box. Entries as in [`list`]: x, y, width, height, then rows of whole words whose bit 0 is the leftmost pixel. Bit 0 of flags: zeros are drawn in the background value; else they stay.
+    Expand = 0x2B "EXPAND" "base, pitch, format, size, operation, planes, origin, clips, foreground, background, flags, clip boxes and bitmaps ...",
     /// Stores the sequence number in FENCE_SEQUENCE and raises the fence interrupt when all before it is done.
     Fence = 0x30 "FENCE" "sequence",
     /// Shows the frame buffer at this byte address from the next vertical blank on; waits for it.
@@ -157,6 +165,68 @@ impl DrawFlags {
     #[must_use]
     pub const fn vertex_words(self) -> u32 {
         3 + self.coloured as u32 + 3 * self.normals as u32 + 2 * self.coordinates as u32
+    }
+}
+
+/// What the packets with lists have in common.
+///
+/// A surface is `base` and `pitch` (bytes) and `size`: width in 15:0, height in 31:16. `origin` is added to the places of
+/// entries: x in 15:0, y in 31:16, signed. Behind the fixed words stand `clips` clip boxes of two words: x1, y1 inclusive,
+/// then x2, y2 exclusive, in pixels of the surface, to which they are cut; without a box nothing is drawn. Entries follow
+/// up to the end of the packet. All places are pairs of signed 16-bit numbers, x in 15:0; sizes are unsigned. Entries are
+/// drawn one after the other, each through the boxes one after the other.
+pub mod list {
+    /// Payload words of FILL_LIST before its clip boxes.
+    pub const FILL_WORDS: u32 = 9;
+    /// Payload words of COPY_LIST before its clip boxes.
+    pub const COPY_WORDS: u32 = 13;
+    /// Payload words of SEGMENTS before its clip boxes.
+    pub const SEGMENTS_WORDS: u32 = 10;
+    /// Payload words of EXPAND before its clip boxes.
+    pub const EXPAND_WORDS: u32 = 11;
+    /// Flags of EXPAND: zeros are drawn, too.
+    pub const EXPAND_OPAQUE: u32 = 1;
+
+    /// A word of two 16-bit numbers.
+    #[must_use]
+    pub const fn pair(low: u16, high: u16) -> u32 {
+        low as u32 | (high as u32) << 16
+    }
+
+    /// Words of a row of `width` pixels of 1 bit.
+    #[must_use]
+    pub const fn bitmap_row_words(width: u32) -> u32 {
+        width.div_ceil(32)
+    }
+}
+
+/// The flags word of SEGMENTS: 0 the last pixel is drawn, 1 strip; all other bits are zero.
+///
+/// Of a segment from (x1, y1) to (x2, y2) the pixels i = 0 .. n are drawn, n = max(|x2 - x1|, |y2 - y1|): i pixels along the
+/// longer axis (y where they are equal) and floor((2 m i + n - b) / 2 n) along the other, m = min(...). b is 1 where the
+/// longer axis is y and y falls, or it is x and x falls; else 0. Pixel n is drawn where the last pixel is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SegmentFlags {
+    /// The last pixel of each segment is drawn, or that of a strip.
+    pub last: bool,
+    /// Entries are points: each after the first ends a segment that starts at the one before and has no last pixel.
+    pub strip: bool,
+}
+
+impl SegmentFlags {
+    /// The flags in a word, if it is a valid one.
+    #[must_use]
+    pub const fn from_code(code: u32) -> Option<SegmentFlags> {
+        if code & !3 != 0 {
+            return None;
+        }
+        Some(SegmentFlags { last: code & 1 != 0, strip: code & 2 != 0 })
+    }
+
+    /// The word.
+    #[must_use]
+    pub const fn code(self) -> u32 {
+        self.last as u32 | (self.strip as u32) << 1
     }
 }
 

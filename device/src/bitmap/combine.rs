@@ -11,13 +11,15 @@
 use super::copy::{Order, move_pixels, stage};
 use super::{Bitmap, Span, charge, specification};
 use crate::probe::account::Account;
-use std::ops::{BitAnd, BitXor};
+use std::ops::{BitAnd, BitOr, BitXor, Not};
 use zga_abi::Counter;
 use zga_abi::format::RasterOperation;
 use zga_firmware::checked::{Combine, CombineSource};
 
 /// A stored pixel.
-trait Pixel: bytemuck::Pod + BitAnd<Output = Self> + BitXor<Output = Self> + PartialEq {
+pub(super) trait Pixel:
+    bytemuck::Pod + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self> + PartialEq
+{
     /// The low bits of a word.
     fn of(word: u32) -> Self;
 }
@@ -42,14 +44,14 @@ impl Pixel for u8 {
 
 /// An operation on some planes: `(d & ((s & keep[0]) ^ keep[1])) ^ ((s & flip[0]) ^ flip[1])`.
 #[derive(Clone, Copy)]
-struct Masks<P> {
+pub(super) struct Masks<P> {
     keep: [P; 2],
     flip: [P; 2],
 }
 
 impl<P: Pixel> Masks<P> {
     /// The masks of an operation on the bits `planes`.
-    fn new(operation: RasterOperation, planes: u32) -> Masks<P> {
+    pub(super) fn new(operation: RasterOperation, planes: u32) -> Masks<P> {
         // Results for source 1 over 1 and 0, and for source 0 over 1 and 0, in every bit of a word.
         let [one_one, one_zero, zero_one, zero_zero] =
             [0, 1, 2, 3].map(|bit| if operation.code() >> bit & 1 == 1 { u32::MAX } else { 0 });
@@ -60,12 +62,12 @@ impl<P: Pixel> Masks<P> {
     }
 
     /// The masks for a source word: what is kept, and what is turned then.
-    fn under(&self, source: P) -> [P; 2] {
+    pub(super) fn under(&self, source: P) -> [P; 2] {
         [self.keep, self.flip].map(|[factor, term]| (source & factor) ^ term)
     }
 
     /// Is the result the source, whatever is there?
-    fn is_copy(&self) -> bool {
+    pub(super) fn is_copy(&self) -> bool {
         let (none, all) = (P::of(0), P::of(u32::MAX));
         self.keep == [none, none] && self.flip == [all, none]
     }
@@ -127,7 +129,7 @@ impl Bitmap {
     }
 
     /// Combines rows with rows, in an order in which each is read before it is written.
-    fn combine_rows<P: Pixel>(&mut self, memory: &mut [P], masks: Masks<P>, from: Span, to: Span) {
+    pub(super) fn combine_rows<P: Pixel>(&mut self, memory: &mut [P], masks: Masks<P>, from: Span, to: Span) {
         let length = to.pixels::<P>();
         let mut row = |row| combine_row(memory, masks, from.at::<P>(row), to.at::<P>(row), length, &mut self.line);
         match Order::of(&from, &to) {

@@ -1,7 +1,7 @@
 //! Bitmap unit: fills, moves, combines, converts and stretches rectangles in video memory.
 //!
 //! Duties: fill, copy with any overlap, raster operations with a plane mask, conversion between formats, stretch, upload
-//! from packets, download to a dense run.
+//! from packets, download to a dense run; lists of rectangles, segments and bitmaps, each through clip boxes.
 //! Inputs: checked rectangles from the firmware. Outputs: words in video memory.
 //! Clocks (`cycles.bitmap`): video memory moves one line of 64 bytes a clock, so each row costs
 //! 1 clock for each line it writes and, where it reads, 1 for each line it reads; what is there counts as read where it
@@ -17,12 +17,22 @@
 //! | [`convert`] | rectangle into another format |
 //! | [`stretch`] | rectangle to another size |
 //! | [`transfer`] | packet to rows, rows to a dense run |
-//! | [`specification`] | combine, convert and stretch pixel by pixel |
+//! | [`fill_list`], [`copy_list`] | rectangles of a list |
+//! | [`segments`] | lines of single pixels |
+//! | [`expand`] | bitmaps of 1 bit a pixel |
+//! | [`canvas`] | what lists are drawn onto: clip boxes, rows |
+//! | [`specification`], [`list_specification`] | what is not a plain move, pixel by pixel |
 
+mod canvas;
 pub(crate) mod combine;
 pub(crate) mod convert;
 pub(crate) mod copy;
+mod copy_list;
+mod expand;
 pub(crate) mod fill;
+mod fill_list;
+mod list_specification;
+mod segments;
 mod specification;
 pub(crate) mod stretch;
 pub(crate) mod transfer;
@@ -32,7 +42,7 @@ use crate::memory::lines;
 use crate::probe::account::{Account, Clocks};
 use stretch::LineBuffers;
 use zga_abi::Counter;
-use zga_firmware::checked::Image;
+use zga_firmware::checked::{ClipBox, Image};
 
 /// The unit, with room that it uses again and again; empty until something needs it.
 #[derive(Debug)]
@@ -44,6 +54,8 @@ pub(crate) struct Bitmap {
     /// One row.
     line: Vec<u32>,
     buffers: LineBuffers,
+    /// Clip boxes of a list.
+    clips: Vec<ClipBox>,
 }
 
 impl Bitmap {
@@ -54,12 +66,14 @@ impl Bitmap {
             scratch: Vec::new(),
             line: Vec::new(),
             buffers: LineBuffers::default(),
+            clips: Vec::new(),
         }
     }
 
     /// Gives its memory back.
     pub(crate) fn power_off(&mut self) {
         (self.scratch, self.line, self.buffers) = (Vec::new(), Vec::new(), LineBuffers::default());
+        self.clips = Vec::new();
     }
 }
 

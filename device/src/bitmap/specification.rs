@@ -15,13 +15,13 @@ fn places(image: &Image, x: u32, y: u32) -> impl Iterator<Item = u64> + use<> {
 }
 
 /// The stored pixel in column `x` of row `y`.
-fn load(memory: &[u32], image: &Image, x: u32, y: u32) -> u32 {
+pub(super) fn load(memory: &[u32], image: &Image, x: u32, y: u32) -> u32 {
     let byte = |at: u64| (memory[(at / 4) as usize] >> (8 * (at % 4))) & 0xFF;
     places(image, x, y).zip(0..).map(|(at, place)| byte(at) << (8 * place)).sum()
 }
 
 /// Stores a pixel.
-fn store(memory: &mut [u32], image: &Image, x: u32, y: u32, pixel: u32) {
+pub(super) fn store(memory: &mut [u32], image: &Image, x: u32, y: u32, pixel: u32) {
     for (at, place) in places(image, x, y).zip(0..) {
         let (word, shift) = (&mut memory[(at / 4) as usize], 8 * (at % 4));
         *word = (*word & !(0xFF << shift)) | (((pixel >> (8 * place)) & 0xFF) << shift);
@@ -35,7 +35,7 @@ fn pixels(image: &Image) -> impl Iterator<Item = (u32, u32)> + use<> {
 }
 
 /// What becomes of the bits `d` under the bits `s`.
-fn operate(operation: RasterOperation, s: u32, d: u32) -> u32 {
+pub(super) fn operate(operation: RasterOperation, s: u32, d: u32) -> u32 {
     match operation {
         RasterOperation::Clear => 0,
         RasterOperation::And => s & d,

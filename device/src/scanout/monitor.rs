@@ -96,6 +96,31 @@ impl Cable {
     }
 }
 
+/// The card's video connector: monitors can be plugged in, now or later. Holding it watches nothing.
+#[derive(Clone, Debug)]
+pub struct Connector {
+    cable: Arc<Cable>,
+}
+
+impl Connector {
+    /// The connector that `cable` hangs at.
+    pub(crate) fn new(cable: Arc<Cable>) -> Connector {
+        Connector { cable }
+    }
+
+    /// Plugs a display in. Frames are composed only while there is one.
+    #[must_use]
+    pub fn plug(&self) -> Monitor {
+        Monitor::new(Arc::clone(&self.cable))
+    }
+
+    /// Does any display hang at the card?
+    #[must_use]
+    pub fn is_watched(&self) -> bool {
+        self.cable.is_watched()
+    }
+}
+
 /// A display at the card's cable. While one exists, frames are composed; a clone is another display.
 ///
 /// It sees the frames that go out from the moment it is plugged in; in continuous mode the next

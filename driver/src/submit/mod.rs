@@ -196,6 +196,26 @@ impl Queue {
         Ok(())
     }
 
+    /// Encodes a packet whose payload `write` appends, not longer than [`Queue::max_packet`]; sends as [`Queue::packet`].
+    ///
+    /// # Errors
+    /// Of the sending: the packet waits.
+    pub fn packet_with<B: Bus>(
+        &mut self,
+        bus: &mut B,
+        opcode: Opcode,
+        write: impl FnOnce(&mut Vec<u32>),
+    ) -> Result<(), DriverError> {
+        let first = self.pending.len();
+        self.pending.push(0);
+        write(&mut self.pending);
+        self.pending[first] = header(opcode, (self.pending.len() - first - 1) as u32);
+        if self.pending.len() > self.limit / 8 {
+            self.flush(bus)?;
+        }
+        Ok(())
+    }
+
     /// Sends everything encoded, with a fence behind it; gives the number of the newest fence.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Packet headers: opcode, reserved bits, and the length as far as the opcode tells it.
 
-use zga_abi::packet::{Opcode, payload_words};
+use zga_abi::packet::{Opcode, list, payload_words};
 use zga_abi::{Fault, FaultCode};
 
 /// Header bits 23:20, which are zero.
@@ -31,6 +31,10 @@ const fn payload(opcode: Opcode) -> Payload {
         Opcode::CopyRop => Payload::Exactly(13),
         Opcode::Convert => Payload::Exactly(12),
         Opcode::Stretch => Payload::Exactly(19),
+        Opcode::FillList => Payload::AtLeast(list::FILL_WORDS),
+        Opcode::CopyList => Payload::AtLeast(list::COPY_WORDS),
+        Opcode::Segments => Payload::AtLeast(list::SEGMENTS_WORDS),
+        Opcode::Expand => Payload::AtLeast(list::EXPAND_WORDS),
         Opcode::Fence | Opcode::Present | Opcode::WriteBack => Payload::Exactly(1),
     }
 }

@@ -29,7 +29,7 @@
 //!
 //! # What is checked where
 //! `decode` opcode and length; `claim` numbers and where they stand; `memory` address ranges;
-//! `registers` register values and writes; `scene`, `draw`, `bitmap`, `display` the packets;
+//! `registers` register values and writes; `scene`, `draw`, `bitmap`, `lists`, `display` the packets;
 //! `power` effects and units; `state` snapshots.
 
 mod bitmap;
@@ -38,6 +38,7 @@ mod decode;
 mod display;
 mod draw;
 mod effects;
+mod lists;
 mod memory;
 mod power;
 mod registers;
@@ -149,6 +150,10 @@ impl Processor {
             Opcode::CopyRop => self.copy_rop(hardware, packet),
             Opcode::Convert => self.convert(hardware, packet),
             Opcode::Stretch => self.stretch(hardware, packet),
+            Opcode::FillList => self.fill_list(hardware, packet),
+            Opcode::CopyList => self.copy_list(hardware, packet),
+            Opcode::Segments => self.segments(hardware, packet),
+            Opcode::Expand => self.expand(hardware, packet),
             Opcode::Fence => self.fence(hardware, packet),
             Opcode::Present => self.present(hardware, packet),
             Opcode::WriteBack => self.write_back(hardware, packet),

@@ -6,7 +6,7 @@ use zga_abi::{Fault, FaultCode};
 use zga_firmware::Processor;
 
 /// Opcode, payload words, whether more are possible.
-const LENGTHS: [(u32, u32, bool); 18] = [
+const LENGTHS: [(u32, u32, bool); 22] = [
     (0x00, 0, true),
     (0x01, 2, true),
     (0x02, 0, false),
@@ -22,6 +22,10 @@ const LENGTHS: [(u32, u32, bool); 18] = [
     (0x25, 13, false),
     (0x26, 12, false),
     (0x27, 19, false),
+    (0x28, 9, true),
+    (0x29, 13, true),
+    (0x2A, 10, true),
+    (0x2B, 11, true),
     (0x30, 1, false),
     (0x31, 1, false),
     (0x32, 1, false),

@@ -4,8 +4,8 @@ use crate::mock::Mock;
 use zga_abi::format::{DepthFormat, FogFunction, HiddenSurface, PixelFormat, SubpixelGrid};
 use zga_abi::{Access, Effects, Reg, Units};
 use zga_firmware::checked::{
-    Clear, Combine, CombineSource, Draw, DrawState, Fog, Image, Lighting, Rectangle, Rows, Stretch, Surface, Target,
-    Texture, Words,
+    Canvas, Clear, Combine, CombineSource, Draw, DrawState, Fog, Image, Lighting, Rectangle, Rows, Stretch, Surface,
+    Target, Texture, Words,
 };
 
 fn memory(mock: &Mock) -> u64 {
@@ -109,6 +109,20 @@ pub fn combine(mock: &Mock, combine: &Combine) {
         assert!(![0, 10, 15].contains(&operation), "clear, invert, set");
         let size = |image: &Image| (image.width, image.height, image.format);
         assert_eq!(size(source), size(&combine.destination));
+    }
+}
+
+/// A list is drawn onto a surface, changes something, and is cut to what lies in it.
+pub fn canvas(mock: &Mock, canvas: &Canvas<'_>) {
+    image(mock, &canvas.surface);
+    let planes = [0xFFFF_FFFF, 0xFFFF_FFFF, 0xFFFF, 0xFF][canvas.surface.format.code() as usize];
+    assert_ne!(canvas.operation.code(), 5, "no-operation");
+    assert_ne!(canvas.planes, 0);
+    assert_eq!(canvas.planes & !planes, 0);
+    assert!(!canvas.clips.is_empty() && canvas.clips.len().is_multiple_of(2));
+    for clip in canvas.clip_boxes() {
+        assert!(0 <= clip.x1 && clip.x1 < clip.x2 && clip.x2 <= canvas.surface.width as i32);
+        assert!(0 <= clip.y1 && clip.y1 < clip.y2 && clip.y2 <= canvas.surface.height as i32);
     }
 }
 

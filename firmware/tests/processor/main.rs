@@ -9,6 +9,7 @@ mod draw;
 mod effects;
 mod header;
 mod invariants;
+mod lists;
 mod mock;
 mod power;
 mod random;

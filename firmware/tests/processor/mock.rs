@@ -6,7 +6,8 @@ use zga_abi::format::Topology;
 use zga_abi::registers::REGISTERS;
 use zga_abi::{Reg, Units};
 use zga_firmware::checked::{
-    Clear, Combine, Convert, Copy, Draw, DrawState, Fill, Rows, Shadow, Stretch, Target, Words,
+    Clear, Combine, Convert, Copy, CopyList, Draw, DrawState, ExpandList, Fill, FillList, Rows, SegmentList, Shadow,
+    Stretch, Target, Words,
 };
 use zga_firmware::{Hardware, Stopped};
 
@@ -58,6 +59,8 @@ pub enum Call {
     Copy(Copy),
     Combine(Combine),
     Convert(Convert),
+    /// The list as text: it does not outlive the packet.
+    List(String),
     Stretch(Stretch),
     Upload(Rows, Vec<u32>),
     Download(Rows, u32),
@@ -222,6 +225,35 @@ impl Hardware for Mock {
     fn stretch(&mut self, stretch: &Stretch) {
         invariants::stretch(self, stretch);
         self.work(Units::BITMAP, Call::Stretch(*stretch));
+    }
+
+    fn fill_list(&mut self, list: &FillList<'_>) {
+        invariants::canvas(self, &list.canvas);
+        assert_eq!(list.rectangles().len() * 2, list.entries.len());
+        self.work(Units::BITMAP, Call::List(format!("{list:?}")));
+    }
+
+    fn copy_list(&mut self, list: &CopyList<'_>) {
+        invariants::canvas(self, &list.canvas);
+        invariants::image(self, &list.source);
+        assert_eq!(list.source.format, list.canvas.surface.format);
+        assert!(list.offset.iter().all(|pixels| pixels.abs() <= 65535));
+        assert_eq!(list.rectangles().len() * 2, list.entries.len());
+        self.work(Units::BITMAP, Call::List(format!("{list:?}")));
+    }
+
+    fn segments(&mut self, list: &SegmentList<'_>) {
+        invariants::canvas(self, &list.canvas);
+        assert!(list.flags.strip || list.entries.len().is_multiple_of(2));
+        assert_eq!(list.segments().count(), list.segments().len());
+        self.work(Units::BITMAP, Call::List(format!("{list:?}")));
+    }
+
+    fn expand(&mut self, list: &ExpandList<'_>) {
+        invariants::canvas(self, &list.canvas);
+        let words: usize = list.bitmaps().map(|bitmap| 2 + bitmap.rows.len()).sum();
+        assert_eq!(words, list.entries.len());
+        self.work(Units::BITMAP, Call::List(format!("{list:?}")));
     }
 
     fn upload(&mut self, rows: &Rows, words: &[u32]) {
