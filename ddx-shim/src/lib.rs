@@ -1,45 +1,45 @@
-//! X.Org video driver module for the ZGA card: the door, not yet the house.
+//! X.Org video driver module for the ZGA card, and what looks at such a card from other processes.
 //!
-//! The module will let a stock X server run on the card: the screen is the card's video memory,
-//! solid fills, copies and lines go through its ring, and the display is its scan-out. It will stand on
-//! `zga-driver` and talk to the card in no other way.
+//! A stock X server (`/usr/lib/xorg/Xorg`) that loads the module `zga_drv.so` runs on a card in its own process: the screen
+//! and the clients' pixmaps are the card's video memory, fills, copies, lines and letters are packets in its ring,
+//! the display is its scan-out with its hardware cursor. The module talks to the card through `zga-driver`.
 //!
-//! Nothing of it is here yet, and nothing pretends to be: the crate builds to this page, and exports
-//! what any X driver has to know about the card it was built for.
+//! | part | holds | needs |
+//! | --- | --- | --- |
+//! | [`engine`] | card, driver, pixmaps, batches, residency: what the module does, in plain Rust | |
+//! | [`options`], [`modes`], [`format`](mod@format) | what a configuration may ask for | |
+//! | `ffi` | the border to the server: the only unsafe code of the project | feature `xorg` |
+//! | [`link`] | frames and counters of a card for other processes, over a Unix socket | |
+//! | [`session`] | X servers on the card, started and ended | an X server at run time |
 //!
-//! # What the module has to match
+//! # Build and configuration
+//! `cargo build --release -p zga-ddx-shim --features xorg` makes `target/release/libzga_ddx_shim.so`, which is installed
+//! as `drivers/zga_drv.so` in a folder of the server's `ModulePath`. It needs the headers of the server that is to load it
+//! (the video driver ABI comes from `pkg-config --variable=abi_videodrv xorg-server`) and libclang. Without the feature no
+//! header is looked for.
 //!
-//! | what | from where |
-//! | --- | --- |
-//! | video driver ABI | `pkg-config --variable=abi_videodrv xorg-server`, at build time |
-//! | depth 24 screens | [`SCREEN_FORMAT`]: one 32-bit word a pixel, as the server's `fb` layer draws it |
-//! | depth 16 screens | [`SCREEN_FORMAT_16`] |
-//! | alignment of pixmaps | [`PITCH_ALIGNMENT`]: what the card asks of a scan-out or render target |
+//! ```text
+//! Section "Device"
+//!     Identifier "card"
+//!     Driver     "zga"
+//!     Option     "VideoMemory" "64"          # MiB, 2 to 1024
+//!     Option     "Accel"       "on"          # off: the server's renderer does everything, in the card's memory
+//!     Option     "Threads"     "0"           # that the card computes with; 0: all cores
+//!     Option     "CpuLimit"    "32768"       # work in pixels under which an idle card is not woken; 0: it always is
+//!     Option     "Link"        "/run/zga"    # a socket for viewers; without, nobody can look and nothing is composed
+//! EndSection
+//! ```
+//!
+//! Screens are of depth 24 or 16, from 64 x 64 pixels to 1920 x 1200, or to what `Virtual` says. What a configuration asks for
+//! in vain is named in the log, and the screen is refused.
 
-use zga_abi::format::PixelFormat;
+pub mod engine;
+pub mod format;
+pub mod link;
+pub mod modes;
+pub mod options;
+pub mod session;
 
-/// Frame buffer format of a screen of depth 24.
-pub const SCREEN_FORMAT: PixelFormat = PixelFormat::Xrgb8888;
-
-/// Frame buffer format of a screen of depth 16.
-pub const SCREEN_FORMAT_16: PixelFormat = PixelFormat::Rgb565;
-
-/// Bytes that the base and pitch of a scan-out or render target are multiples of.
-pub const PITCH_ALIGNMENT: u32 = 64;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn formats_pixel_sizes_are_those_of_the_x_depths() {
-        assert_eq!(SCREEN_FORMAT.bytes(), 4);
-        assert_eq!(SCREEN_FORMAT_16.bytes(), 2);
-    }
-
-    #[test]
-    fn pitch_alignment_is_what_the_registers_keep() {
-        let writable = zga_abi::Reg::ColourPitch.info().writable;
-        assert_eq!(1 << writable.trailing_zeros(), PITCH_ALIGNMENT);
-    }
-}
+#[cfg(feature = "xorg")]
+#[expect(unsafe_code, reason = "the border to the X server: C calls in and out; each block has its proof")]
+mod ffi;

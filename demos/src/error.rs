@@ -3,6 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
+use zga_ddx_shim::link::LinkError;
+use zga_ddx_shim::session::SessionError;
 use zga_device::CardError;
 use zga_driver::DriverError;
 use zga_driver::trace::TraceError;
@@ -116,6 +118,20 @@ pub enum Error {
         /// What is wrong with it.
         reason: TraceError,
     },
+    /// A card in another process cannot be looked at.
+    #[error("{0}")]
+    Link(#[from] LinkError),
+    /// An X server or one of its clients.
+    #[error("{0}")]
+    Session(#[from] SessionError),
+    /// The X server's own protocol.
+    #[error("display {display}: {reason}")]
+    Display {
+        /// The display.
+        display: String,
+        /// What is wrong with the connection.
+        reason: String,
+    },
 }
 
 impl Error {
@@ -127,7 +143,12 @@ impl Error {
                 DriverError::Timeout { .. } | DriverError::CardFault(_) => 1,
                 _ => 2,
             },
-            Self::Trace { reason: TraceError::Stalled { .. }, .. } => 1,
+            Self::Trace { reason: TraceError::Stalled { .. }, .. }
+            | Self::Link(LinkError::HungUp { .. } | LinkError::Timeout { .. } | LinkError::Damaged { .. })
+            | Self::Session(
+                SessionError::DidNotStart { .. } | SessionError::NotReady { .. } | SessionError::Ended { .. },
+            )
+            | Self::Display { .. } => 1,
             _ => 2,
         }
     }

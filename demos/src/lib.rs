@@ -42,6 +42,7 @@ mod table;
 pub mod teapot;
 pub mod texture;
 mod window;
+mod x;
 
 pub use error::{Error, Result};
 pub use limits::{

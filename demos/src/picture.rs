@@ -46,6 +46,12 @@ impl Picture {
         Self { width: frame.width, height: frame.height, rgb: rgb(&frame.pixels) }
     }
 
+    /// A picture of `size` in XRGB8888 words, dense rows.
+    #[must_use]
+    pub fn of_xrgb([width, height]: [u32; 2], pixels: &[u32]) -> Self {
+        Self { width, height, rgb: rgb(pixels) }
+    }
+
     /// The picture as XRGB8888 words.
     #[must_use]
     pub fn xrgb(&self) -> Vec<u32> {

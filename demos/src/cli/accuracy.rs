@@ -78,13 +78,12 @@ impl Accuracy {
         } else {
             print(&accuracy::text(&report))?;
         }
-        let write = |file: &Option<PathBuf>, text: &str| match file {
-            Some(file) if file != Path::new("-") => {
+        let write = |file: &Option<PathBuf>, text: &str| -> Result<()> {
+            if let Some(file) = file.as_ref().filter(|file| *file != Path::new("-")) {
                 write_file(file, text.as_bytes())?;
                 note(&file.display().to_string());
-                Ok(())
             }
-            _ => Ok(()),
+            Ok(())
         };
         write(&self.json, &json)?;
         write(&self.html, &accuracy::html(&report))?;

@@ -10,6 +10,7 @@ mod effects;
 mod flags;
 mod list;
 mod main_job;
+mod monitor;
 mod paths;
 mod pixel;
 mod progress;
@@ -19,6 +20,7 @@ mod source;
 mod stability;
 mod trace;
 mod waves;
+mod x;
 
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
@@ -67,6 +69,8 @@ enum Command {
     Waves(waves::Waves),
     Bench(bench::Bench),
     Registers(registers::Registers),
+    X(x::X),
+    Monitor(monitor::Monitor),
 }
 
 /// Runs the program with these arguments, the program's name first.
@@ -95,6 +99,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Some(Command::Waves(command)) => command.run(),
         Some(Command::Bench(command)) => command.run(),
         Some(Command::Registers(command)) => command.run(),
+        Some(Command::X(command)) => command.run(),
+        Some(Command::Monitor(command)) => command.run(),
     };
     match done {
         Ok(Verdict::Good) => ExitCode::SUCCESS,

@@ -1,0 +1,19 @@
+/* What the module needs of the X server's headers; build.rs makes Rust declarations of it. */
+#include "xorg-server.h"
+#include "xf86.h"
+#include "xf86Crtc.h"
+#include "xf86Cursor.h"
+#include "xf86_OSproc.h"
+#include "micmap.h"
+#include "mi.h"
+#include "mipointer.h"
+#include "fb.h"
+#include "exa.h"
+#include "gcstruct.h"
+#include "dixfontstr.h"
+#include "picturestr.h"
+#include "glyphstr.h"
+#include "fbpict.h"
+#include "cursorstr.h"
+#include <X11/extensions/dpmsconst.h>
+#include <signal.h>
