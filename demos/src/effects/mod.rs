@@ -135,7 +135,14 @@ const PARTS: [Part; 13] = [
         name: "bitmap",
         unit: Units::BITMAP,
         clocks: Some(Counter::CyclesBitmap),
-        events: &[Counter::BitmapPixels, Counter::BitmapCombined, Counter::BitmapStretched],
+        events: &[
+            Counter::BitmapPixels,
+            Counter::BitmapCombined,
+            Counter::BitmapStretched,
+            Counter::BitmapEntries,
+            Counter::BitmapSegmentPixels,
+            Counter::BitmapExpanded,
+        ],
         bytes: &[],
     },
     Part {
