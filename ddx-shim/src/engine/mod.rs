@@ -11,7 +11,7 @@
 //!
 //! # When work is sent
 //! Nothing is sent call by call. A batch goes out when the server has nothing else to do ([`Engine::flush`]), when an
-//! access needs it, or when it holds enough work to keep the card busy ([`BATCH_WORK`]).
+//! access needs it, or when it holds enough work to keep the card busy (`BATCH_WORK`).
 
 mod access;
 mod batches;
