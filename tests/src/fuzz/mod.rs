@@ -30,6 +30,7 @@ pub mod bytes;
 pub mod compare;
 pub mod coverage;
 mod draws;
+mod lists;
 mod looks;
 pub mod minimise;
 pub mod packets;

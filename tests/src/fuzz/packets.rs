@@ -91,7 +91,7 @@ impl<'a, 'b> Composer<'a, 'b> {
 
     /// One thing that can be done in a scene.
     fn step(&mut self, picture: &Picture) {
-        match self.bytes.byte() % 36 {
+        match self.bytes.byte() % 40 {
             0..=7 => self.draw_inline(picture),
             8 => self.draw_heavy(picture),
             9..=12 => self.draw_buffer(picture),
@@ -120,6 +120,10 @@ impl<'a, 'b> Composer<'a, 'b> {
             33 => self.copy_rop(),
             34 => self.convert(),
             35 => self.stretch(),
+            36 => self.fill_list(),
+            37 => self.copy_list(),
+            38 => self.segments(),
+            39 => self.expand(),
             _ => self.register(),
         }
     }

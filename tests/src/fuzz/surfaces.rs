@@ -36,13 +36,13 @@ impl Picture {
 
 /// A rectangle of a surface.
 #[derive(Clone, Copy)]
-struct Area {
-    base: u32,
-    pitch: u32,
-    x: u32,
-    y: u32,
-    width: u32,
-    height: u32,
+pub(super) struct Area {
+    pub(super) base: u32,
+    pub(super) pitch: u32,
+    pub(super) x: u32,
+    pub(super) y: u32,
+    pub(super) width: u32,
+    pub(super) height: u32,
 }
 
 impl Composer<'_, '_> {
@@ -84,7 +84,7 @@ impl Composer<'_, '_> {
     }
 
     /// A rectangle for pixels of `pixel` bytes; of `size` if it is given. Seldom outside.
-    fn area(&mut self, pixel: u32, size: Option<[u32; 2]>) -> Area {
+    pub(super) fn area(&mut self, pixel: u32, size: Option<[u32; 2]>) -> Area {
         let bytes = &mut *self.bytes;
         let columns = 1 + bytes.below(1024);
         let pitch = pixel * columns;
@@ -130,13 +130,13 @@ impl Composer<'_, '_> {
     }
 
     /// A format of the bitmap unit, and bytes of its pixels.
-    fn bitmap_format(&mut self) -> (u32, u32) {
+    pub(super) fn bitmap_format(&mut self) -> (u32, u32) {
         let format = self.bytes.below(4);
         (format, [4, 4, 2, 1][format as usize])
     }
 
     /// A raster operation and the planes it works on.
-    fn raster(&mut self) -> [u32; 2] {
+    pub(super) fn raster(&mut self) -> [u32; 2] {
         let operation = self.bytes.below(16);
         let planes = if self.bytes.chance(128) { self.bytes.raw() } else { u32::MAX };
         [operation, planes]
