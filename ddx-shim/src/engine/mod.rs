@@ -15,8 +15,10 @@
 
 mod access;
 mod batches;
+pub mod compose;
 mod display;
 mod draw;
+pub mod glyphs;
 pub mod lists;
 mod moves;
 mod pixmaps;
