@@ -203,9 +203,8 @@ pub enum Origin {
     Radial([i32; 3]),
 }
 
-/// Formats of pictures: depth, red shift, red mask, alpha mask. The second is b8g8r8a8, the last are a8b8g8r8 and x8r8g8b8 of
-/// depth 32.
-pub const PIXELS: [(u8, u16, u16, u16); 9] = [
+/// Formats of pictures: depth, red shift, red mask, alpha mask. The second is b8g8r8a8, the last is x8r8g8b8 of depth 32.
+pub const PIXELS: [(u8, u16, u16, u16); 8] = [
     (32, 16, 0xFF, 0xFF),
     (32, 8, 0xFF, 0xFF),
     (24, 16, 0xFF, 0),
@@ -213,7 +212,6 @@ pub const PIXELS: [(u8, u16, u16, u16); 9] = [
     (16, 11, 0x1F, 0),
     (8, 0, 0, 0xFF),
     (1, 0, 0, 1),
-    (32, 0, 0xFF, 0xFF),
     (32, 16, 0xFF, 0),
 ];
 
@@ -887,8 +885,7 @@ fn pictures(surfaces: &[Surface], random: &mut Random) -> Vec<Origin> {
             let fits = match format {
                 // What is premultiplied with alpha in one byte is not with alpha in another.
                 0 | 1 => (format == 1) == surface.is_reversed() && !surface.is_without_alpha(),
-                7 => !surface.is_reversed() && !surface.is_without_alpha(),
-                8 => surface.is_without_alpha(),
+                7 => surface.is_without_alpha(),
                 // Windows are read in the format of their visual alone.
                 3 => surface.window.is_none(),
                 _ => true,

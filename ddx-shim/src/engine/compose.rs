@@ -117,7 +117,7 @@ impl Area {
     }
 
     /// All of a surface.
-    fn of(surface: Surface) -> Area {
+    pub fn of(surface: Surface) -> Area {
         let [x2, y2] = surface.size.map(|side| side.min(MOST_SIDE) as i32);
         Area { x1: 0, y1: 0, x2, y2 }
     }

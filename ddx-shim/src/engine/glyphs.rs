@@ -13,6 +13,8 @@ use super::pixmaps::{Pixmaps, Place};
 
 /// Most pixels of a mask that is made here. A line of text across a wide screen has as many.
 const MOST_GATHERED: u64 = 1 << 17;
+/// Most bytes of a row: with the most clip boxes, even the ring of 2 MiB of memory takes a packet of that.
+const MOST_ROW: u32 = 4 * 1900;
 
 /// A glyph with its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +47,7 @@ impl Glyph {
         let pixmap = pixmaps.get(self.pixmap)?;
         let Place::Host(words) = &pixmap.place else { return None };
         let fits = pixmap.bits_per_pixel == 8 * self.format.bytes()
+            && u32::from(self.width) * self.format.bytes() <= MOST_ROW
             && pixmap.width >= self.width.into()
             && pixmap.height >= self.height.into();
         fits.then(|| (bytemuck::cast_slice(words), pixmap.pitch as usize))
@@ -161,7 +164,7 @@ impl Engine {
         let place = half(around.x1).zip(half(around.y1));
         let size = side(around.x1, around.x2).zip(side(around.y1, around.y2));
         let (Some((x, y)), Some((width, height))) = (place, size) else { return false };
-        if around.pixels() > MOST_GATHERED {
+        if around.pixels() > MOST_GATHERED || u32::from(width) * format.bytes() > MOST_ROW {
             return false;
         }
         let mut rows = std::mem::take(&mut self.scratch.mask);
