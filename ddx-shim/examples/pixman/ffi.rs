@@ -21,13 +21,8 @@ pub struct Colour {
 
 #[link(name = "pixman-1")]
 unsafe extern "C" {
-    fn pixman_image_create_bits(
-        format: u32,
-        width: c_int,
-        height: c_int,
-        bits: *mut u32,
-        stride: c_int,
-    ) -> *mut Opaque;
+    fn pixman_image_create_bits(format: u32, width: c_int, height: c_int, bits: *mut u32, stride: c_int)
+    -> *mut Opaque;
     fn pixman_image_create_solid_fill(colour: *const Colour) -> *mut Opaque;
     fn pixman_image_unref(image: *mut Opaque) -> c_int;
     fn pixman_image_set_repeat(image: *mut Opaque, repeat: u32);

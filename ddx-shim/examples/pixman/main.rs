@@ -362,7 +362,10 @@ fn main() -> ExitCode {
     let ways = off.map_or("as it is".to_owned(), |off| format!("without {off}"));
     match run(&cli) {
         Ok((differ, changed)) => {
-            println!("pixman: {} compositions (libpixman {ways}): {changed} pixels changed, {differ} differ", cli.cases);
+            println!(
+                "pixman: {} compositions (libpixman {ways}): {changed} pixels changed, {differ} differ",
+                cli.cases
+            );
             // Where nothing changes nothing is proved.
             ExitCode::from(u8::from(differ > 0 || changed == 0))
         }

@@ -938,15 +938,7 @@ fn matrix(random: &mut Random) -> Transform {
             // A half or a quarter round.
             let [a, b] = random.of(&[[-one, 0], [0, one], [0, -one]]);
             let (x, y) = (shift(random), shift(random));
-            Transform {
-                matrix11: a,
-                matrix12: b,
-                matrix13: x,
-                matrix21: -b,
-                matrix22: a,
-                matrix23: y,
-                ..identity
-            }
+            Transform { matrix11: a, matrix12: b, matrix13: x, matrix21: -b, matrix22: a, matrix23: y, ..identity }
         }
         5 => {
             // Moved by parts of a pixel, among them those where one ends and the next begins.

@@ -7,8 +7,8 @@
 use zga_abi::format::{ComposeOperator, PictureFormat, RasterOperation, Repeat};
 use zga_device::CardBus;
 use zga_driver::{
-    Canvas, ClipBox, Composition, Drawable, Driver, DriverError, ListRectangle, Mask, Paint, Picture, Raster, Rectangle,
-    Transform,
+    Canvas, ClipBox, Composition, Drawable, Driver, DriverError, ListRectangle, Mask, Paint, Picture, Raster,
+    Rectangle, Transform,
 };
 
 use super::Engine;
@@ -345,9 +345,9 @@ impl Engine {
         let request = request.simple().reduced(area);
         match request.plain(area) {
             Some(plain) => self.compose_plain(&request, area, &plain),
-            None => self.composed(&request, area, None, &|driver, _, composition| {
-                driver.compose(composition, &[rectangle])
-            }),
+            None => {
+                self.composed(&request, area, None, &|driver, _, composition| driver.compose(composition, &[rectangle]))
+            }
         }
     }
 

@@ -219,8 +219,12 @@ unsafe extern "C" fn composite(
         }
         validate(from);
         let pscreen = (*(*onto).pDrawable).pScreen;
-        let composite =
-            Composite { operator, source: (from, [x, y]), mask: (mask, [mask_x, mask_y]), onto: (onto, [onto_x, onto_y]) };
+        let composite = Composite {
+            operator,
+            source: (from, [x, y]),
+            mask: (mask, [mask_x, mask_y]),
+            onto: (onto, [onto_x, onto_y]),
+        };
         let drawn = functions(pscreen).and_then(|exa| composite.request(exa)).is_some_and(|(request, [x, y])| {
             let (Ok(x), Ok(y)) = (i16::try_from(x), i16::try_from(y)) else { return false };
             let rectangle = ListRectangle { x, y, width, height };
