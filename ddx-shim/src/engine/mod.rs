@@ -15,6 +15,7 @@
 
 mod access;
 mod batches;
+mod closing;
 mod display;
 mod draw;
 pub mod lists;
