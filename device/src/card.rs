@@ -24,8 +24,8 @@ use std::sync::atomic::Ordering::SeqCst;
 use zga_abi::bus::INTERRUPT_FENCE;
 use zga_abi::{Counter, Fault, Reg, Units};
 use zga_firmware::checked::{
-    Clear, Combine, CombineSource, Convert, Copy, CopyList, Draw, DrawState, ExpandList, Fill, FillList, Rows,
-    SegmentList, Shadow, Stretch, Target, Words,
+    Clear, Combine, CombineSource, Compose, Convert, Copy, CopyList, Draw, DrawState, ExpandList, Fill, FillList, Mask,
+    Paint, Rows, SegmentList, Shadow, Stretch, Target, Words,
 };
 use zga_firmware::{Hardware, Processor, ProcessorState, Stopped};
 
@@ -345,6 +345,19 @@ impl Hardware for Wiring<'_> {
         let Blocks { bitmap, account, .. } = &mut *self.blocks;
         let memory = self.memory.using(NOTHING, expand.canvas.surface.bytes(), account);
         bitmap.expand(memory, expand, account);
+    }
+
+    fn compose(&mut self, compose: &Compose<'_>) {
+        let Blocks { bitmap, account, .. } = &mut *self.blocks;
+        let bytes = |paint: &Paint| match paint {
+            Paint::Colour(_) => NOTHING,
+            Paint::Picture(sampled) => sampled.picture.image.bytes(),
+        };
+        if let Mask::Paint(paint) = &compose.mask {
+            self.memory.reading(bytes(paint), account);
+        }
+        let memory = self.memory.using(bytes(&compose.source), compose.onto.image.bytes(), account);
+        bitmap.compose(memory, compose, account);
     }
 
     fn upload(&mut self, rows: &Rows, words: &[u32]) {

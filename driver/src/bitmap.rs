@@ -135,8 +135,8 @@ pub enum ImageError {
         /// Format of the destination.
         to: &'static str,
     },
-    /// A stretch would write to its own source.
-    #[error("stretch: what is written would lie in its own source, copy that first")]
+    /// A stretch or composition would write to its own source.
+    #[error("what is written would lie in its own source, copy that first")]
     Overlap,
     /// A bitmap has too few bytes.
     #[error("a bitmap of {width} x {height} pixels has {found} bytes, {needed} are needed")]

@@ -55,6 +55,7 @@ mod antialias;
 mod bitmap;
 pub mod bus;
 mod capture;
+mod compose;
 mod display;
 mod draw;
 mod driver;
@@ -76,6 +77,7 @@ mod warning;
 pub use antialias::Antialias;
 pub use bitmap::{Drawable, Image, ImageError, Placement, Raster};
 pub use capture::{Frame, frame_hash, hash_text};
+pub use compose::{Composition, Mask, MaskGlyph, Paint, Picture, Transform};
 pub use draw::{Curve, MeshBuffer, Vertex, Vertices};
 pub use driver::{Driver, DriverOptions};
 pub use effects::{

@@ -70,7 +70,7 @@ impl ClipBox {
     pub const ALL: ClipBox = ClipBox { x1: 0, y1: 0, x2: i16::MAX, y2: i16::MAX };
 
     /// No pixel lies in it.
-    const fn is_empty(self) -> bool {
+    pub(crate) const fn is_empty(self) -> bool {
         self.x1 >= self.x2 || self.y1 >= self.y2
     }
 }
@@ -111,7 +111,7 @@ pub struct BitmapGlyph<'b> {
 }
 
 /// Appends values as words; they have whole ones.
-fn append<T: Pod>(words: &mut Vec<u32>, values: &[T]) {
+pub(crate) fn append<T: Pod>(words: &mut Vec<u32>, values: &[T]) {
     let bytes: &[u8] = bytemuck::cast_slice(values);
     let first = words.len();
     words.resize(first + bytes.len() / 4, 0);
@@ -119,7 +119,7 @@ fn append<T: Pod>(words: &mut Vec<u32>, values: &[T]) {
 }
 
 /// A surface as it stands in packets with lists.
-fn surface_words(surface: &Surface) -> [u32; 4] {
+pub(crate) fn surface_words(surface: &Surface) -> [u32; 4] {
     [surface.base, surface.pitch, surface.format.code(), list::pair(surface.width as u16, surface.height as u16)]
 }
 
@@ -138,7 +138,7 @@ impl<B: Bus> Driver<B> {
     }
 
     /// Most words of entries that go behind `before` words and the clip boxes.
-    fn entry_room(&self, packet: Opcode, before: usize, clips: &[ClipBox]) -> Result<usize, DriverError> {
+    pub(crate) fn entry_room(&self, packet: Opcode, before: usize, clips: &[ClipBox]) -> Result<usize, DriverError> {
         let fixed = 1 + before + 2 * clips.len();
         let most = self.queue.max_packet();
         match most.checked_sub(fixed) {
@@ -148,7 +148,7 @@ impl<B: Bus> Driver<B> {
     }
 
     /// Encodes a list of entries of whole words: each packet begins with `parts` and the clip boxes.
-    fn encode_list<T: Pod>(
+    pub(crate) fn encode_list<T: Pod>(
         &mut self,
         opcode: Opcode,
         parts: [&[u32]; 2],

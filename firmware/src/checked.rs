@@ -3,8 +3,11 @@
 //! Invariants hold by construction in [`crate::Processor`]: every address range lies in video
 //! memory, every alignment is right, every enumeration has a meaning. Units do not check again.
 
+mod compose;
 mod lists;
 
+pub(crate) use compose::are_entries;
+pub use compose::{Compose, ComposeEntry, Mask, Paint, Picture, Sampled, Transform};
 pub(crate) use lists::are_bitmaps;
 pub use lists::{Bitmap, Canvas, ClipBox, CopyList, ExpandList, FillList, ListRectangle, Point, Segment, SegmentList};
 

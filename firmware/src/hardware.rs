@@ -1,8 +1,8 @@
 //! The card's units as the firmware sees them.
 
 use crate::checked::{
-    Clear, Combine, Convert, Copy, CopyList, Draw, DrawState, ExpandList, Fill, FillList, Rows, SegmentList, Shadow,
-    Stretch, Target, Words,
+    Clear, Combine, Compose, Convert, Copy, CopyList, Draw, DrawState, ExpandList, Fill, FillList, Rows, SegmentList,
+    Shadow, Stretch, Target, Words,
 };
 use zga_abi::{Reg, Units};
 
@@ -78,6 +78,9 @@ pub trait Hardware {
 
     /// Draws bitmaps of 1 bit a pixel.
     fn expand(&mut self, expand: &ExpandList<'_>);
+
+    /// Composes rectangles.
+    fn compose(&mut self, compose: &Compose<'_>);
 
     /// Writes `words` to rows in video memory; `words` has `rows.words * rows.rows` of them.
     fn upload(&mut self, rows: &Rows, words: &[u32]);

@@ -142,6 +142,7 @@ const PARTS: [Part; 13] = [
             Counter::BitmapEntries,
             Counter::BitmapSegmentPixels,
             Counter::BitmapExpanded,
+            Counter::BitmapComposed,
         ],
         bytes: &[],
     },

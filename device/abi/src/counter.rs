@@ -116,4 +116,5 @@ counters! {
     BitmapEntries "bitmap.entries" "Entries of lists: rectangles, segments, bitmaps.",
     BitmapSegmentPixels "bitmap.segment_pixels" "Pixels that segments lit.",
     BitmapExpanded "bitmap.expanded" "Pixels that bitmaps of 1 bit a pixel covered, drawn or not.",
+    BitmapComposed "bitmap.composed" "Pixels that were composed.",
 }

@@ -567,3 +567,178 @@ impl DepthFormat {
         (1 << self.bits) - 1
     }
 }
+
+enumeration! {
+    /// Format of a pixel of a picture that is composed.
+    PictureFormat {
+        /// As [`PixelFormat::Xrgb8888`].
+        Xrgb8888 = 0 "xrgb8888",
+        /// As [`PixelFormat::Argb8888`].
+        Argb8888 = 1 "argb8888",
+        /// As [`PixelFormat::Rgb565`].
+        Rgb565 = 2 "rgb565",
+        /// As [`BitmapFormat::Alpha8`].
+        Alpha8 = 3 "alpha8",
+        /// 32 bits: 31:24 written as 255, 23:16 blue, 15:8 green, 7:0 red.
+        Xbgr8888 = 4 "xbgr8888",
+        /// 32 bits: 31:24 alpha, 23:16 blue, 15:8 green, 7:0 red.
+        Abgr8888 = 5 "abgr8888",
+    }
+}
+
+impl PictureFormat {
+    /// Bytes of a pixel.
+    #[must_use]
+    pub const fn bytes(self) -> u32 {
+        self.layout().bytes()
+    }
+
+    /// A format of the bitmap unit whose pixels take as many bytes.
+    #[must_use]
+    pub const fn layout(self) -> BitmapFormat {
+        match self {
+            PictureFormat::Rgb565 => BitmapFormat::Rgb565,
+            PictureFormat::Alpha8 => BitmapFormat::Alpha8,
+            _ => BitmapFormat::Argb8888,
+        }
+    }
+
+    /// A pixel has colours, and not coverage alone.
+    #[must_use]
+    pub const fn has_colours(self) -> bool {
+        !matches!(self, PictureFormat::Alpha8)
+    }
+
+    /// The ARGB word (alpha in 31:24, blue in 7:0) of a stored pixel; bits beyond the format do not count.
+    #[must_use]
+    pub const fn decode(self, pixel: u32) -> u32 {
+        match self {
+            PictureFormat::Xrgb8888 => pixel | 0xFF00_0000,
+            PictureFormat::Argb8888 => pixel,
+            PictureFormat::Rgb565 => {
+                let [r, g, b, a] = PixelFormat::Rgb565.decode(pixel);
+                u32::from_be_bytes([a, r, g, b])
+            }
+            PictureFormat::Alpha8 => pixel << 24,
+            PictureFormat::Xbgr8888 => red_for_blue(pixel) | 0xFF00_0000,
+            PictureFormat::Abgr8888 => red_for_blue(pixel),
+        }
+    }
+
+    /// The stored pixel of an ARGB word.
+    #[must_use]
+    pub const fn encode(self, argb: u32) -> u32 {
+        match self {
+            PictureFormat::Xrgb8888 => argb | 0xFF00_0000,
+            PictureFormat::Argb8888 => argb,
+            PictureFormat::Rgb565 => {
+                let [a, r, g, b] = argb.to_be_bytes();
+                PixelFormat::Rgb565.encode([r, g, b, a])
+            }
+            PictureFormat::Alpha8 => argb >> 24,
+            PictureFormat::Xbgr8888 => red_for_blue(argb) | 0xFF00_0000,
+            PictureFormat::Abgr8888 => red_for_blue(argb),
+        }
+    }
+}
+
+/// A word with its bytes 0 and 2 in each other's place.
+const fn red_for_blue(word: u32) -> u32 {
+    (word & 0xFF00_FF00) | (word >> 16 & 0xFF) | (word & 0xFF) << 16
+}
+
+enumeration! {
+    /// How a composition puts a source and a destination together, in the numbering of the RENDER extension: the channels
+    /// of the source times a factor and those of the destination times another, their sum at most 255. S and D are the
+    /// alphas of source and destination.
+    ComposeOperator {
+        /// 0 and 0.
+        Clear = 0 "clear",
+        /// 1 and 0.
+        Source = 1 "source",
+        /// 0 and 1: nothing changes.
+        Destination = 2 "destination",
+        /// 1 and 1 - S.
+        Over = 3 "over",
+        /// 1 - D and 1.
+        OverReverse = 4 "over-reverse",
+        /// D and 0.
+        In = 5 "in",
+        /// 0 and S.
+        InReverse = 6 "in-reverse",
+        /// 1 - D and 0.
+        Out = 7 "out",
+        /// 0 and 1 - S.
+        OutReverse = 8 "out-reverse",
+        /// D and 1 - S.
+        Atop = 9 "atop",
+        /// 1 - D and S.
+        AtopReverse = 10 "atop-reverse",
+        /// 1 - D and 1 - S.
+        Xor = 11 "xor",
+        /// 1 and 1.
+        Add = 12 "add",
+    }
+}
+
+/// A factor of a composition, from an alpha.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ComposeFactor {
+    /// 0.
+    Zero,
+    /// 1.
+    One,
+    /// The alpha of the other side.
+    Alpha,
+    /// 1 less the alpha of the other side.
+    Inverse,
+}
+
+impl ComposeOperator {
+    /// The factors of source and destination.
+    #[must_use]
+    pub const fn factors(self) -> [ComposeFactor; 2] {
+        use ComposeFactor::{Alpha, Inverse, One, Zero};
+        match self {
+            ComposeOperator::Clear => [Zero, Zero],
+            ComposeOperator::Source => [One, Zero],
+            ComposeOperator::Destination => [Zero, One],
+            ComposeOperator::Over => [One, Inverse],
+            ComposeOperator::OverReverse => [Inverse, One],
+            ComposeOperator::In => [Alpha, Zero],
+            ComposeOperator::InReverse => [Zero, Alpha],
+            ComposeOperator::Out => [Inverse, Zero],
+            ComposeOperator::OutReverse => [Zero, Inverse],
+            ComposeOperator::Atop => [Alpha, Inverse],
+            ComposeOperator::AtopReverse => [Inverse, Alpha],
+            ComposeOperator::Xor => [Inverse, Inverse],
+            ComposeOperator::Add => [One, One],
+        }
+    }
+
+    /// The result depends on the source, or on its mask.
+    #[must_use]
+    pub const fn reads_source(self) -> bool {
+        !matches!(self, ComposeOperator::Clear | ComposeOperator::Destination)
+    }
+
+    /// The result depends on what is there.
+    #[must_use]
+    pub const fn reads_destination(self) -> bool {
+        !matches!(self, ComposeOperator::Clear | ComposeOperator::Source)
+    }
+}
+
+enumeration! {
+    /// What lies outside of a picture that is composed, in the numbering of the RENDER extension.
+    Repeat {
+        /// Nothing: transparent black, whatever the format.
+        None = 0 "none",
+        /// The picture again.
+        Normal = 1 "normal",
+        /// Its nearest pixel.
+        Pad = 2 "pad",
+        /// The picture mirrored at its sides.
+        Reflect = 3 "reflect",
+    }
+}

@@ -82,6 +82,8 @@ opcodes! {
     Segments = 0x2A "SEGMENTS" "base, pitch, format, size, operation, planes, origin, clips, value, flags, clip boxes and segments ...",
     /// Draws bitmaps of 1 bit a pixel in two values through a raster operation, each through each clip box. Entries as in [`list`]: x, y, width, height, then rows of whole words whose bit 0 is the leftmost pixel. Bit 0 of flags: zeros are drawn in the background value; else they stay.
     Expand = 0x2B "EXPAND" "base, pitch, format, size, operation, planes, origin, clips, foreground, background, flags, clip boxes and bitmaps ...",
+    /// Composes a source through a mask with what is there, as in [`compose`]. Entries as of FILL_LIST; behind an inline mask's x, y, width, height stand its rows.
+    Compose = 0x2C "COMPOSE" "base, pitch, format, size, operator, flags, origin, clips, source paint (14 words), mask paint (14 words), clip boxes and rectangles ...",
     /// Stores the sequence number in FENCE_SEQUENCE and raises the fence interrupt when all before it is done.
     Fence = 0x30 "FENCE" "sequence",
     /// Shows the frame buffer at this byte address from the next vertical blank on; waits for it.
@@ -187,6 +189,9 @@ pub mod list {
     /// Flags of EXPAND: zeros are drawn, too.
     pub const EXPAND_OPAQUE: u32 = 1;
 
+    /// Payload words of COMPOSE before its clip boxes.
+    pub const COMPOSE_WORDS: u32 = 8 + 2 * super::compose::PAINT_WORDS;
+
     /// A word of two 16-bit numbers.
     #[must_use]
     pub const fn pair(low: u16, high: u16) -> u32 {
@@ -197,6 +202,46 @@ pub mod list {
     #[must_use]
     pub const fn bitmap_row_words(width: u32) -> u32 {
         width.div_ceil(32)
+    }
+}
+
+/// What COMPOSE means.
+///
+/// Surface, origin, clip boxes and entries are those of [`list`]; the format is a [`PictureFormat`](crate::format::PictureFormat).
+/// A paint is `kind, format, repeat, base or colour, pitch, size, offset x, offset y, xx, xy, x0, yx, yy, y0`; words that a kind
+/// does not use are not looked at. Offsets are signed, at most 65535 pixels; the last six are 16.16.
+///
+/// All channels are 8 bits; a format without alpha reads as opaque, one without colours as black. With
+/// mul(a, b) = (t + t / 256) / 256 for t = a b + 128, a pixel is, channel by channel, min(255, mul(s, F) + mul(d, G)): s the
+/// source, d what is there, F and G the factors of the operator ([`ComposeOperator`](crate::format::ComposeOperator)) with
+/// 255 for 1, F from the alpha of d, G from that of s. A mask m comes before: s becomes mul(s, alpha of m). A mask by components
+/// ([`COMPONENTS`](compose::COMPONENTS)) has each channel of s multiplied by its own channel of m, and the alpha of s, for G,
+/// in each channel by that.
+///
+/// The pixel of a paint for the pixel (x, y) of the surface is i = x + offset x, j = y + offset y; transformed, column
+/// (xx i + xy j + (xx + xy + 1) / 2 + x0 - 1) / 65536 and row (yx i + yy j + (yx + yy + 1) / 2 + y0 - 1) / 65536: the nearest pixel;
+/// quotients are rounded down. What lies outside is the repeat's. An image shares no byte with the surface, gaps between
+/// its rows counted in.
+pub mod compose {
+    /// Words of a paint.
+    pub const PAINT_WORDS: u32 = 14;
+    /// Flags: the mask is one by components.
+    pub const COMPONENTS: u32 = 1;
+    /// Kind: there is none; a mask alone.
+    pub const NONE: u32 = 0;
+    /// Kind: an ARGB word everywhere.
+    pub const COLOUR: u32 = 1;
+    /// Kind: an image, pixel by pixel.
+    pub const IMAGE: u32 = 2;
+    /// Kind: an image, transformed.
+    pub const TRANSFORMED: u32 = 3;
+    /// Kind: pixels in the entries, alpha8 or argb8888, each row padded to whole words, whose first is the entry's; a mask alone.
+    pub const INLINE: u32 = 4;
+
+    /// Words of a row of `width` pixels of `bytes` bytes in an entry.
+    #[must_use]
+    pub const fn row_words(width: u32, bytes: u32) -> u32 {
+        (width * bytes).div_ceil(4)
     }
 }
 

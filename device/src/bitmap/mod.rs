@@ -20,11 +20,13 @@
 //! | [`fill_list`], [`copy_list`] | rectangles of a list |
 //! | [`segments`] | lines of single pixels |
 //! | [`expand`] | bitmaps of 1 bit a pixel |
+//! | [`compose`] | pictures put together with alpha |
 //! | [`canvas`] | what lists are drawn onto: clip boxes, rows |
 //! | [`specification`], [`list_specification`] | what is not a plain move, pixel by pixel |
 
 mod canvas;
 pub(crate) mod combine;
+mod compose;
 pub(crate) mod convert;
 pub(crate) mod copy;
 mod copy_list;
@@ -40,6 +42,7 @@ pub(crate) mod transfer;
 use crate::Kernel;
 use crate::memory::lines;
 use crate::probe::account::{Account, Clocks};
+use fearless_simd::Level;
 use stretch::LineBuffers;
 use zga_abi::Counter;
 use zga_firmware::checked::{ClipBox, Image};
@@ -49,6 +52,8 @@ use zga_firmware::checked::{ClipBox, Image};
 pub(crate) struct Bitmap {
     /// Pixel by pixel, in place of the fast ways.
     specification: bool,
+    /// Host instructions; none for the specification.
+    level: Option<Level>,
     /// Rows of a source that overlaps its destination: at most what lies in video memory.
     scratch: Vec<u32>,
     /// One row.
@@ -63,6 +68,10 @@ impl Bitmap {
     pub(crate) fn new(kernel: Kernel) -> Bitmap {
         Bitmap {
             specification: kernel == Kernel::Specification,
+            level: match kernel {
+                Kernel::Specification => None,
+                kernel => kernel.level().or_else(|| Kernel::Best.level()),
+            },
             scratch: Vec::new(),
             line: Vec::new(),
             buffers: LineBuffers::default(),

@@ -85,6 +85,14 @@ impl VideoMemory {
         &mut self.words
     }
 
+    /// A unit is about to read these bytes beside those that it names as it takes the words.
+    pub(crate) fn reading(&mut self, read: Range<u64>, account: &mut Account) {
+        if !self.areas.all().is_empty() {
+            let (mut parts, areas) = self.parts();
+            areas.release(&mut parts, read, false, account);
+        }
+    }
+
     /// All words, for the pipeline, which knows what it changes.
     pub(crate) fn drawing(&mut self) -> &mut [u32] {
         self.generation += 1;

@@ -31,8 +31,9 @@ impl Kernel {
         all.into_iter().filter(|k| *k == Kernel::Specification || k.level().is_some()).chain([Kernel::Best]).collect()
     }
 
+    /// The level of host instructions; `None` for the specification, and for what the host cannot run.
     #[cfg(target_arch = "x86_64")]
-    pub(super) fn level(self) -> Option<Level> {
+    pub(crate) fn level(self) -> Option<Level> {
         let best = Level::new();
         match self {
             Kernel::Best => Some(best),
@@ -44,8 +45,9 @@ impl Kernel {
         }
     }
 
+    /// The level of host instructions; `None` for the specification.
     #[cfg(not(target_arch = "x86_64"))]
-    pub(super) fn level(self) -> Option<Level> {
+    pub(crate) fn level(self) -> Option<Level> {
         (self == Kernel::Best).then(Level::new)
     }
 }

@@ -126,8 +126,7 @@ impl<'a> Canvas<'a> {
     }
 
     const fn rectangle(&self, place: u32, size: u32) -> ListRectangle {
-        let (Point { x, y }, [width, height]) = (self.point(place), unsigned(size));
-        ListRectangle { x, y, width, height }
+        place_of(place, size, self.origin)
     }
 
     /// The rectangles of entries of two words.
@@ -145,6 +144,18 @@ pub(super) fn clip_boxes<'a>(surface: &Image, clips: &'a [u32]) -> impl Iterator
         ClipBox { x1, y1, x2, y2 }.cut(whole)
     });
     boxes.filter(|clip| !clip.is_empty())
+}
+
+/// The rectangle in two words, with an origin added.
+pub(super) const fn place_of(place: u32, size: u32, origin: [i32; 2]) -> ListRectangle {
+    let ([x, y], [width, height]) = (signed(place), unsigned(size));
+    ListRectangle { x: x + origin[0], y: y + origin[1], width, height }
+}
+
+/// Words of the rows of an entry, and the words behind them; `None` where there are not as many.
+pub(super) fn take_rows(words: &[u32], size: u32, row_words: impl Fn(u32) -> u32) -> Option<(&[u32], &[u32])> {
+    let count = u64::from(row_words(size & 0xFFFF)) * u64::from(size >> 16);
+    words.split_at_checked(usize::try_from(count).ok()?)
 }
 
 /// Rectangles of one value.
@@ -285,8 +296,7 @@ pub(crate) fn take_bitmap(
 ) -> Option<(Bitmap<'_>, &[u32])> {
     let (&[place, size], rest) = words.split_first_chunk::<2>()?;
     let place = rectangle(place, size);
-    let words = u64::from(list::bitmap_row_words(size & 0xFFFF)) * u64::from(size >> 16);
-    let (rows, rest) = rest.split_at_checked(usize::try_from(words).ok()?)?;
+    let (rows, rest) = take_rows(rest, size, list::bitmap_row_words)?;
     Some((Bitmap { place, rows }, rest))
 }
 

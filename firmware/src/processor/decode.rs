@@ -35,6 +35,7 @@ const fn payload(opcode: Opcode) -> Payload {
         Opcode::CopyList => Payload::AtLeast(list::COPY_WORDS),
         Opcode::Segments => Payload::AtLeast(list::SEGMENTS_WORDS),
         Opcode::Expand => Payload::AtLeast(list::EXPAND_WORDS),
+        Opcode::Compose => Payload::AtLeast(list::COMPOSE_WORDS),
         Opcode::Fence | Opcode::Present | Opcode::WriteBack => Payload::Exactly(1),
     }
 }

@@ -14,7 +14,7 @@ use zga_abi::packet::{SegmentFlags, list};
 use zga_abi::{Fault, Units};
 
 /// Farthest offset of a source, pixels each way: places and their sources stay far from where 32 bits end.
-const FARTHEST: i32 = 65535;
+pub(super) const FARTHEST: u32 = 65535;
 
 /// A whole surface whose base, pitch and size stand in words of the packet.
 pub(super) struct SurfaceClaim {
@@ -102,7 +102,7 @@ impl Processor {
             SurfaceClaim { base: Claim::word(9, base), pitch: Claim::word(10, pitch), size: Claim::word(11, size) };
         let source = source.image(memory, format)?;
         for (word, offset) in [(12, x), (13, y)] {
-            Claim::word(word, offset).require((offset as i32).unsigned_abs() <= FARTHEST.unsigned_abs())?;
+            Claim::word(word, offset).require((offset as i32).unsigned_abs() <= FARTHEST)?;
         }
         if let Some(canvas) = canvas {
             self.power.need(hardware, Units::BITMAP);
@@ -151,7 +151,7 @@ impl Processor {
 }
 
 /// Words 1 to 8, which all lists begin with, and the words behind the first `words` payload words.
-fn fixed(packet: &[u32], words: u32) -> Result<([u32; 8], &[u32]), Fault> {
+pub(super) fn fixed(packet: &[u32], words: u32) -> Result<([u32; 8], &[u32]), Fault> {
     let fixed = packet.get(1..).and_then(|payload| payload.first_chunk::<8>());
     match (fixed, packet.get(1 + words as usize..)) {
         (Some(&fixed), Some(rest)) => Ok((fixed, rest)),

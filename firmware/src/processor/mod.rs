@@ -34,6 +34,7 @@
 
 mod bitmap;
 mod claim;
+mod compose;
 mod decode;
 mod display;
 mod draw;
@@ -152,6 +153,7 @@ impl Processor {
             Opcode::Stretch => self.stretch(hardware, packet),
             Opcode::FillList => self.fill_list(hardware, packet),
             Opcode::CopyList => self.copy_list(hardware, packet),
+            Opcode::Compose => self.compose(hardware, packet),
             Opcode::Segments => self.segments(hardware, packet),
             Opcode::Expand => self.expand(hardware, packet),
             Opcode::Fence => self.fence(hardware, packet),

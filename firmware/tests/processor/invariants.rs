@@ -4,8 +4,8 @@ use crate::mock::Mock;
 use zga_abi::format::{DepthFormat, FogFunction, HiddenSurface, PixelFormat, SubpixelGrid};
 use zga_abi::{Access, Effects, Reg, Units};
 use zga_firmware::checked::{
-    Canvas, Clear, Combine, CombineSource, Draw, DrawState, Fog, Image, Lighting, Rectangle, Rows, Stretch, Surface,
-    Target, Texture, Words,
+    Canvas, Clear, Combine, CombineSource, Compose, Draw, DrawState, Fog, Image, Lighting, Mask, Paint, Rectangle,
+    Rows, Stretch, Surface, Target, Texture, Words,
 };
 
 fn memory(mock: &Mock) -> u64 {
@@ -124,6 +124,32 @@ pub fn canvas(mock: &Mock, canvas: &Canvas<'_>) {
         assert!(0 <= clip.x1 && clip.x1 < clip.x2 && clip.x2 <= canvas.surface.width as i32);
         assert!(0 <= clip.y1 && clip.y1 < clip.y2 && clip.y2 <= canvas.surface.height as i32);
     }
+}
+
+/// A composition changes something, and reads nothing that it writes.
+pub fn compose(mock: &Mock, compose: &Compose<'_>) {
+    let onto = &compose.onto.image;
+    image(mock, onto);
+    assert_ne!(compose.operator.code(), 2, "destination");
+    assert!(!compose.clips.is_empty() && compose.clips.len().is_multiple_of(2));
+    let mask = match &compose.mask {
+        Mask::Paint(paint) => Some(paint),
+        Mask::Inline(_) => None,
+        Mask::None => {
+            assert!(!compose.components);
+            None
+        }
+    };
+    for paint in [Some(&compose.source), mask].into_iter().flatten() {
+        let Paint::Picture(sampled) = paint else { continue };
+        let read = &sampled.picture.image;
+        image(mock, read);
+        assert_eq!(read.format.bytes(), sampled.picture.format.bytes());
+        assert!(read.bytes().end <= onto.bytes().start || onto.bytes().end <= read.bytes().start);
+        assert!(sampled.offset.iter().all(|pixels| pixels.abs() <= 65535));
+    }
+    let words: usize = compose.entries().map(|entry| 2 + entry.rows.len()).sum();
+    assert_eq!(words, compose.entries.len());
 }
 
 /// A stretch writes a part of the whole and nothing of its source.

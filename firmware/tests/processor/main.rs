@@ -4,6 +4,7 @@
 
 mod bench;
 mod bitmap;
+mod compose;
 mod display;
 mod draw;
 mod effects;

@@ -6,8 +6,8 @@ use zga_abi::format::Topology;
 use zga_abi::registers::REGISTERS;
 use zga_abi::{Reg, Units};
 use zga_firmware::checked::{
-    Clear, Combine, Convert, Copy, CopyList, Draw, DrawState, ExpandList, Fill, FillList, Rows, SegmentList, Shadow,
-    Stretch, Target, Words,
+    Clear, Combine, Compose, Convert, Copy, CopyList, Draw, DrawState, ExpandList, Fill, FillList, Rows, SegmentList,
+    Shadow, Stretch, Target, Words,
 };
 use zga_firmware::{Hardware, Stopped};
 
@@ -254,6 +254,11 @@ impl Hardware for Mock {
         let words: usize = list.bitmaps().map(|bitmap| 2 + bitmap.rows.len()).sum();
         assert_eq!(words, list.entries.len());
         self.work(Units::BITMAP, Call::List(format!("{list:?}")));
+    }
+
+    fn compose(&mut self, compose: &Compose<'_>) {
+        invariants::compose(self, compose);
+        self.work(Units::BITMAP, Call::List(format!("{compose:?}")));
     }
 
     fn upload(&mut self, rows: &Rows, words: &[u32]) {

@@ -2,9 +2,9 @@
 
 use crate::FaultCode;
 use crate::format::{
-    BitmapFormat, BlendMode, DepthFormat, DepthFunction, FogFunction, HiddenSurface, LightType, PixelFormat,
-    RasterOperation, StretchFilter, SubpixelDepth, SubpixelGrid, SubpixelResolve, TextureFilter, TextureFormat,
-    TextureFunction, Topology,
+    BitmapFormat, BlendMode, ComposeOperator, DepthFormat, DepthFunction, FogFunction, HiddenSurface, LightType,
+    PictureFormat, PixelFormat, RasterOperation, Repeat, StretchFilter, SubpixelDepth, SubpixelGrid, SubpixelResolve,
+    TextureFilter, TextureFormat, TextureFunction, Topology,
 };
 use crate::light::{LIGHT_BYTES, LightRecord, MOST_LIGHTS};
 use crate::packet::{DrawFlags, MAX_PAYLOAD, Opcode, header, payload_words};
@@ -56,6 +56,9 @@ macro_rules! round_trips {
 round_trips! {
     pixel_format_codes_round_trip: PixelFormat, 8;
     bitmap_format_codes_round_trip: BitmapFormat, 8;
+    picture_format_codes_round_trip: PictureFormat, 8;
+    compose_operator_codes_round_trip: ComposeOperator, 8;
+    repeat_codes_round_trip: Repeat, 8;
     raster_operation_codes_round_trip: RasterOperation, 8;
     stretch_filter_codes_round_trip: StretchFilter, 8;
     depth_function_codes_round_trip: DepthFunction, 8;
@@ -248,4 +251,20 @@ fn depth_format_maximum_is_all_bits_set() {
     assert_eq!(maximum(31), Some(0x7FFF_FFFF));
     assert_eq!(maximum(32), None);
     assert_eq!(DepthFormat::new(24, 4), None);
+}
+
+#[test]
+fn picture_format_stored_pixels_come_back() {
+    for &format in PictureFormat::ALL {
+        let bits = u32::MAX >> (32 - 8 * format.bytes());
+        for pixel in [0, 0x1234_5678, 0x89AB_CDEF, u32::MAX].map(|pixel| pixel & bits) {
+            let argb = format.decode(pixel);
+            let unused =
+                if matches!(format, PictureFormat::Xrgb8888 | PictureFormat::Xbgr8888) { 0xFF00_0000 } else { 0 };
+            assert_eq!(format.encode(argb), pixel | unused, "{} {pixel:#x}", format.name());
+        }
+    }
+    assert_eq!(PictureFormat::Abgr8888.decode(0x1122_3344), 0x1144_3322);
+    assert_eq!(PictureFormat::Alpha8.decode(0x7F), 0x7F00_0000);
+    assert_eq!(PictureFormat::Rgb565.decode(0xF800), 0xFFFF_0000);
 }
