@@ -125,7 +125,7 @@ fn compose_glyphs_of_any_size_and_stride() {
                 (7..57, 2..442) => (y as u32 - 2) % 60 * 4,
                 _ => 0,
             };
-            assert_eq!(pixel, 0xFF00_0000 | level * 0x0001_0101, "({x}, {y})");
+            assert_eq!(pixel, 0xFF00_0000 | (level * 0x0001_0101), "({x}, {y})");
         }
     }
     let colours = MaskGlyph { x: 0, y: 0, width: 1, height: 1, rows: &[0, 0x80, 0xFF, 0], stride: 4 };
