@@ -33,7 +33,7 @@ run() {
 build() {
   step "the module and the suites"
   # In one go with the program: both then have the card built with the same effects.
-  cargo build --release --locked -p zga-demos -p zga-ddx-shim --features zga-ddx-shim/xorg --lib --bins --example x_suite || exit 2
+  cargo build --release --locked -p zga-demos -p zga-ddx-shim --features zga-ddx-shim/xorg --lib --bins --example x_suite --example pixman || exit 2
   # A build without the feature makes a library of the same name that is no module: the module gets a name of its own.
   # Moved into its place, not written over: a server may have the one before in its memory.
   cp "$target/release/libzga_ddx_shim.so" "$target/release/zga_drv.so.new" || exit 2
@@ -53,6 +53,18 @@ null() {
   run mutants --driver dummy --seeds 20 --render
 }
 
+# The card's compositions against libpixman: with all its ways, and with the general one alone.
+pixman() {
+  local off
+  for off in "" "fast mmx sse2 ssse3 wholeops"; do
+    step "pixman --cases $1${off:+, without $off}"
+    if ! PIXMAN_DISABLE=$off "$target/release/examples/pixman" --cases "$1"; then
+      failed+=("pixman --cases $1${off:+, without $off}")
+      [ $worst -lt 1 ] && worst=1
+    fi
+  done
+}
+
 # What a user types, once.
 program() {
   local out=zga-out/x/program.png
@@ -66,6 +78,7 @@ program() {
 
 quick() {
   null 10
+  pixman 30000
   run differential --seeds 30
   # By itself the module leaves small work to the server while the card is idle: here the card draws all that it can.
   run differential --seeds 60 --cpu-limit 0
@@ -73,13 +86,14 @@ quick() {
   run differential --seeds 20 --cpu-limit 0 --depth 16 --render
   run differential --seeds 20 --cpu-limit 0 --memory 5 --pressure --render
   run differential --seeds 20 --cpu-limit 0 --composite --render
-  run rendercheck --quick
+  run rendercheck --quick --cpu-limit 0
   run kills --clients 6
   program
 }
 
 full() {
   null 50
+  pixman 1000000
   local limit
   for limit in 0 32768; do
     run differential --seeds 200 --cpu-limit $limit
@@ -92,8 +106,8 @@ full() {
     run differential --seeds 100 --seed 7001 --cpu-limit $limit --composite --render
   done
   run differential --seeds 50 --seed 8001 --no-accel --render
-  run rendercheck --beside
-  run rendercheck --depth 16 --quick
+  run rendercheck --beside --cpu-limit 0
+  run rendercheck --depth 16 --quick --cpu-limit 0
   run clients
   run kills
   run soak --seconds 300

@@ -1,14 +1,14 @@
 //! X.Org video driver module for the ZGA card, and what looks at such a card from other processes.
 //!
 //! A stock X server (`/usr/lib/xorg/Xorg`) that loads the module `zga_drv.so` runs on a card in its own process: the screen
-//! and the clients' pixmaps are the card's video memory, fills, copies, lines and letters are packets in its ring,
+//! and the clients' pixmaps are the card's video memory, fills, copies, lines, letters and compositions are packets in its ring,
 //! the display is its scan-out with its hardware cursor. The module talks to the card through `zga-driver`.
 //!
 //! | part | holds | needs |
 //! | --- | --- | --- |
 //! | [`engine`] | card, driver, pixmaps, batches, residency: what the module does, in plain Rust | |
 //! | [`options`], [`modes`], [`format`](mod@format) | what a configuration may ask for | |
-//! | `ffi` | the border to the server: the only unsafe code of the project | feature `xorg` |
+//! | `ffi` | the border to the server: the only unsafe code of the module | feature `xorg` |
 //! | [`link`] | frames and counters of a card for other processes, over a Unix socket | |
 //! | [`session`] | X servers on the card, started and ended | an X server at run time |
 //!
@@ -32,6 +32,11 @@
 //!
 //! Screens are of depth 24 or 16, from 64 x 64 pixels to 1920 x 1200, or to what `Virtual` says. What a configuration asks for
 //! in vain is named in the log, and the screen is refused.
+//!
+//! # RENDER
+//! The card composes with the operators 0 (Clear) to 12 (Add), pictures of a8r8g8b8, x8r8g8b8, a8b8g8r8, x8b8g8r8, r5g6b5 and a8,
+//! solid fills, all repeats, masks by components, affine transforms with the nearest pixel, and glyphs of a8 and a8r8g8b8: every
+//! channel to the bit as the server's renderer. See [`engine::compose`] for what is left to that.
 
 pub mod engine;
 pub mod format;

@@ -17,7 +17,7 @@ use x11rb::rust_connection::{DefaultStream, RustConnection};
 use zga_ddx_shim::session::Session;
 
 use super::random::Random;
-use super::scene::{CONTEXTS, FONTS, GLYPHS, Origin, PIXELS, Request, Scene};
+use super::scene::{CONTEXTS, FONTS, GLYPHS, Gathered, Origin, PIXELS, Request, Scene};
 
 /// Why a scene could not be played to its end.
 #[derive(Debug, thiserror::Error)]
@@ -96,9 +96,12 @@ struct Stage<'a> {
     contexts: Vec<Gcontext>,
     fonts: Vec<Font>,
     pictures: Vec<Picture>,
-    glyphs: u32,
+    /// Glyph sets, of the formats below.
+    glyphs: [u32; 2],
     /// Format of masks that trapezoids and glyphs are gathered in.
     alpha: Pictformat,
+    /// The same with components.
+    components: Pictformat,
 }
 
 /// Plays a part of a scene and takes the pixels. Everything is gone from the server afterwards, with the connection.
@@ -194,8 +197,9 @@ impl<'a> Stage<'a> {
             contexts,
             fonts,
             pictures: Vec::new(),
-            glyphs: 0,
+            glyphs: [0; 2],
             alpha: 0,
+            components: 0,
         };
         stage.fill_pixmaps(&mut random)?;
         if scene.kind.render {
@@ -292,21 +296,23 @@ impl<'a> Stage<'a> {
             }
             self.pictures.push(picture);
         }
-        self.alpha = format(5)?;
-        self.glyphs = connection.generate_id()?;
-        connection.render_create_glyph_set(self.glyphs, self.alpha)?;
-        for glyph in 0..GLYPHS {
-            let [width, height] = [random.below(18) as u16 + 1, random.below(18) as u16 + 1];
-            let info = Glyphinfo {
-                width,
-                height,
-                x: random.between(-3, 3) as i16,
-                y: random.between(0, 14) as i16,
-                x_off: width as i16,
-                y_off: 0,
-            };
-            let bytes = random.bytes(stride(width.into(), 8) * usize::from(height));
-            connection.render_add_glyphs(self.glyphs, &[glyph], &[info], &bytes)?;
+        (self.alpha, self.components) = (format(5)?, format(0)?);
+        for (set, (format, depth)) in [(self.alpha, 8), (self.components, 32)].into_iter().enumerate() {
+            self.glyphs[set] = connection.generate_id()?;
+            connection.render_create_glyph_set(self.glyphs[set], format)?;
+            for glyph in 0..GLYPHS {
+                let [width, height] = [random.below(18) as u16 + 1, random.below(18) as u16 + 1];
+                let info = Glyphinfo {
+                    width,
+                    height,
+                    x: random.between(-3, 3) as i16,
+                    y: random.between(0, 14) as i16,
+                    x_off: width as i16,
+                    y_off: 0,
+                };
+                let bytes = random.bytes(stride(width.into(), depth) * usize::from(height));
+                connection.render_add_glyphs(self.glyphs[set], &[glyph], &[info], &bytes)?;
+            }
         }
         Ok(())
     }
@@ -461,16 +467,29 @@ impl<'a> Stage<'a> {
                 let format = if *masked { self.alpha } else { 0 };
                 to.render_triangles(*op, picture(from), picture(on), format, *x, *y, list)?
             }
-            Request::Glyphs { op, from, on, masked, at: [x, y], list } => {
-                let format = if *masked { self.alpha } else { 0 };
-                let mut commands = Vec::new();
+            Request::Glyphs { op, from, on, mask, at: [x, y], list } => {
+                let format = match mask {
+                    None => 0,
+                    Some(Gathered::Alpha) => self.alpha,
+                    Some(Gathered::Components) => self.components,
+                };
+                let of = |glyph: u8| usize::from(u32::from(glyph) >= GLYPHS);
+                let first = list.first().map_or(0, |(glyph, _)| of(*glyph));
+                let (mut commands, mut set) = (Vec::new(), first);
                 for (glyph, [right, down]) in list {
+                    if of(*glyph) != set {
+                        // From here on the other set.
+                        set = of(*glyph);
+                        commands.extend([255, 0, 0, 0, 0, 0, 0, 0]);
+                        commands.extend(self.glyphs[set].to_ne_bytes());
+                    }
                     commands.extend([1, 0, 0, 0]);
                     commands.extend(right.to_ne_bytes());
                     commands.extend(down.to_ne_bytes());
-                    commands.extend([*glyph, 0, 0, 0]);
+                    commands.extend([glyph % GLYPHS as u8, 0, 0, 0]);
                 }
-                to.render_composite_glyphs8(*op, picture(from), picture(on), format, self.glyphs, *x, *y, &commands)?
+                let set = self.glyphs[first];
+                to.render_composite_glyphs8(*op, picture(from), picture(on), format, set, *x, *y, &commands)?
             }
             Request::Blot { on, at: [x, y] } => {
                 let gc = to.generate_id()?;
@@ -519,7 +538,8 @@ impl<'a> Stage<'a> {
         match self.connection.get_image(format, from, x, y, width, height, planes)?.reply() {
             Ok(image) => {
                 let mut bytes = image.data;
-                // Depth 24 in 32 bits: the protocol leaves the rest undefined.
+                // Depth 24 in 32 bits: the protocol leaves the rest undefined. RENDER's pictures of it have no channel there, and
+                // what the server's renderer leaves there depends on the way it takes; nothing reads it but as opaque.
                 if format == ImageFormat::Z_PIXMAP && depth == 24 {
                     bytes.as_chunks_mut::<4>().0.iter_mut().for_each(|pixel| pixel[3] = 0);
                 }

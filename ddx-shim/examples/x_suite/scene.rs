@@ -25,10 +25,17 @@ impl Surface {
     pub fn is_reversed(&self) -> bool {
         self.depth == 32 && self.width == REVERSED_WIDTH
     }
+
+    /// Its pixels have no alpha, but a byte where others have it.
+    fn is_without_alpha(&self) -> bool {
+        self.depth == 32 && self.width == OPAQUE_WIDTH
+    }
 }
 
 /// What surfaces of the other order of bytes are told by.
 const REVERSED_WIDTH: u16 = 61;
+/// What surfaces of depth 32 without alpha are told by.
+const OPAQUE_WIDTH: u16 = 57;
 
 /// A window's place.
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +83,32 @@ pub struct Change {
     pub font: Option<usize>,
     pub subwindows: Option<SubwindowMode>,
     pub arcs: Option<ArcMode>,
+}
+
+/// How a context draws lines.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pen {
+    wide: bool,
+    dashed: bool,
+    round_ends: bool,
+    round_joins: bool,
+}
+
+impl Pen {
+    fn changed(self, change: &Change) -> Pen {
+        Pen {
+            wide: change.width.map_or(self.wide, |width| width > 0),
+            dashed: change.line.map_or(self.dashed, |line| line != LineStyle::SOLID),
+            round_ends: change.cap.map_or(self.round_ends, |cap| cap == CapStyle::ROUND),
+            round_joins: change.join.map_or(self.round_joins, |join| join == JoinStyle::ROUND),
+        }
+    }
+
+    /// Wide dashed lines with something round: of these the stock server's miWideDash writes beyond its block of the heap, so
+    /// that it is anybody's guess what becomes of the server.
+    const fn is_trouble(self) -> bool {
+        self.wide && self.dashed && (self.round_ends || self.round_joins)
+    }
 }
 
 impl Request {
@@ -170,8 +203,8 @@ pub enum Origin {
     Radial([i32; 3]),
 }
 
-/// Formats of pictures: depth, red shift, red mask, alpha mask. The second is b8g8r8a8.
-pub const PIXELS: [(u8, u16, u16, u16); 7] = [
+/// Formats of pictures: depth, red shift, red mask, alpha mask. The second is b8g8r8a8, the last is x8r8g8b8 of depth 32.
+pub const PIXELS: [(u8, u16, u16, u16); 8] = [
     (32, 16, 0xFF, 0xFF),
     (32, 8, 0xFF, 0xFF),
     (24, 16, 0xFF, 0),
@@ -179,6 +212,7 @@ pub const PIXELS: [(u8, u16, u16, u16); 7] = [
     (16, 11, 0x1F, 0),
     (8, 0, 0, 0xFF),
     (1, 0, 0, 1),
+    (32, 16, 0xFF, 0),
 ];
 
 /// One request. `on`: surface, `gc`: graphics context, `pic`: picture.
@@ -356,8 +390,9 @@ pub enum Request {
         op: PictOp,
         from: usize,
         on: usize,
-        masked: bool,
+        mask: Option<Gathered>,
         at: [i16; 2],
+        /// Numbers from [`GLYPHS`] on are of the second set.
         list: Vec<(u8, [i16; 2])>,
     },
     /// One pixel inverted: what a scene must not differ by without being found out.
@@ -365,6 +400,15 @@ pub enum Request {
         on: usize,
         at: [i16; 2],
     },
+}
+
+/// Format of a mask that glyphs are added up in.
+#[derive(Clone, Copy, Debug)]
+pub enum Gathered {
+    /// Alpha alone.
+    Alpha,
+    /// Each channel by itself.
+    Components,
 }
 
 /// Core fonts that are used.
@@ -416,6 +460,14 @@ impl Scene {
             (16, 16, 32),
             (REVERSED_WIDTH, 47, 32),
         ];
+        let mut depths = vec![screen, 1, 8, 32];
+        if kind.render {
+            pixmaps.push((OPAQUE_WIDTH, 40, 32));
+            if screen != 16 {
+                pixmaps.extend([(120, 90, 16), (16, 16, 16)]);
+                depths.push(16);
+            }
+        }
         if kind.pressure {
             pixmaps.extend((0..14).map(|_| (random.between(200, 500) as u16, random.between(200, 500) as u16, screen)));
         }
@@ -425,15 +477,20 @@ impl Scene {
             depth,
             window: None,
         }));
-        let depths = vec![screen, 1, 8, 32];
         let pictures = if kind.render { pictures(&surfaces, &mut random) } else { Vec::new() };
         let mut scene = Scene { seed, kind, surfaces, pictures, depths, requests: Vec::new() };
         // Tile and stipple of each context. A surface is not filled with itself: which of its pixels are read after they
         // have been written is left open by the protocol.
         let mut patterns = vec![[None; 2]; scene.depths.len() * CONTEXTS];
+        let mut pens = vec![Pen::default(); scene.depths.len() * CONTEXTS];
         while scene.requests.len() < kind.requests {
             let request = scene.request(&mut random);
             if let Request::Change { gc, change } = &request {
+                let pen = pens[*gc].changed(change);
+                if pen.is_trouble() {
+                    continue;
+                }
+                pens[*gc] = pen;
                 let [tile, stipple] = patterns[*gc];
                 patterns[*gc] = [change.tile.or(tile), change.stipple.or(stipple)];
             }
@@ -783,7 +840,7 @@ impl Scene {
             9 => Request::Transformed {
                 pic: from,
                 matrix: matrix(random),
-                filter: random.of(&["nearest", "nearest", "bilinear"]),
+                filter: random.of(&["nearest", "nearest", "nearest", "bilinear"]),
             },
             10 | 11 => {
                 let list = (0..random.below(4) + 1).map(|_| trapezoid(self.place(surface, random), random)).collect();
@@ -800,18 +857,25 @@ impl Scene {
                 Request::Triangles { op, from, on, masked: random.once_in(2), at, list }
             }
             _ => {
+                // Of one set, of the other, or of both.
+                let (first, sorts) = random.of(&[(0, 1), (0, 1), (GLYPHS, 1), (0, 2)]);
+                // Over each other, or mostly side by side.
+                let near = random.of(&[-18, 0]);
                 let glyph = |random: &mut Random| {
-                    (random.below(GLYPHS) as u8, [random.between(0, 20) as i16, random.between(-3, 3) as i16])
+                    let number = first + random.below(sorts * GLYPHS);
+                    (number as u8, [random.between(near, near + 20) as i16, random.between(-3, 3) as i16])
                 };
-                let mut list: Vec<_> = (0..random.below(12) + 1).map(|_| glyph(random)).collect();
+                let count = random.of(&[1, 12]);
+                let mut list: Vec<_> = (0..random.below(count) + 1).map(|_| glyph(random)).collect();
                 list[0].1 = to;
-                Request::Glyphs { op, from, on, masked: random.once_in(2), at, list }
+                let mask = random.of(&[None, None, Some(Gathered::Alpha), Some(Gathered::Components)]);
+                Request::Glyphs { op, from, on, mask, at, list }
             }
         }
     }
 }
 
-/// Glyphs of the one glyph set.
+/// Glyphs of each of the two glyph sets, one of alpha alone, one of components.
 pub const GLYPHS: u32 = 24;
 
 fn pictures(surfaces: &[Surface], random: &mut Random) -> Vec<Origin> {
@@ -819,8 +883,9 @@ fn pictures(surfaces: &[Surface], random: &mut Random) -> Vec<Origin> {
     for (on, surface) in surfaces.iter().enumerate() {
         for (format, (depth, ..)) in PIXELS.iter().enumerate() {
             let fits = match format {
-                // What is premultiplied in one order of bytes is not in another: one picture of such a surface.
-                0 | 1 => (format == 1) == surface.is_reversed(),
+                // What is premultiplied with alpha in one byte is not with alpha in another.
+                0 | 1 => (format == 1) == surface.is_reversed() && !surface.is_without_alpha(),
+                7 => surface.is_without_alpha(),
                 // Windows are read in the format of their visual alone.
                 3 => surface.window.is_none(),
                 _ => true,
@@ -864,8 +929,19 @@ fn matrix(random: &mut Random) -> Transform {
         matrix33: one,
     };
     let shift = |random: &mut Random| random.between(-30 * one, 30 * one);
-    match random.below(4) {
+    match random.below(6) {
         0 => identity,
+        4 => {
+            // A half or a quarter round.
+            let [a, b] = random.of(&[[-one, 0], [0, one], [0, -one]]);
+            let (x, y) = (shift(random), shift(random));
+            Transform { matrix11: a, matrix12: b, matrix13: x, matrix21: -b, matrix22: a, matrix23: y, ..identity }
+        }
+        5 => {
+            // Moved by parts of a pixel, among them those where one ends and the next begins.
+            let mut way = || random.between(-60, 60) * one / 2 + random.between(-1, 1);
+            Transform { matrix13: way(), matrix23: way(), ..identity }
+        }
         1 => Transform { matrix13: random.between(-30, 30) << 16, matrix23: random.between(-30, 30) << 16, ..identity },
         2 => {
             let mut scale = || random.between(one / 4, 3 * one);

@@ -45,9 +45,11 @@ impl Points<'_> {
 /// Room for what lists are made of, kept from call to call.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    clips: Vec<ClipBox>,
+    pub clips: Vec<ClipBox>,
+    /// Glyphs added up.
+    pub mask: Vec<u8>,
     points: Vec<Point>,
-    pub(super) rectangles: Vec<ListRectangle>,
+    pub rectangles: Vec<ListRectangle>,
 }
 
 /// Work of rectangles, in pixels.
@@ -152,9 +154,9 @@ impl Engine {
 }
 
 /// Boxes of a clip that travel with one packet, 2 words each. Even the ring of 2 MiB of memory takes packets of 4094 words.
-const MOST_CLIPS: usize = 1024;
+pub(super) const MOST_CLIPS: usize = 1024;
 /// Work that an entry is at least, in pixels.
-const ENTRY: u64 = 16;
+pub(super) const ENTRY: u64 = 16;
 
 /// Pixels of a line.
 fn length(from: [i16; 2], to: [i16; 2]) -> u64 {
@@ -163,7 +165,7 @@ fn length(from: [i16; 2], to: [i16; 2]) -> u64 {
 }
 
 /// A box somewhere else; what leaves 16 bits is cut off, for no pixmap reaches there.
-fn moved(clip: ClipBox, [x, y]: [i32; 2]) -> ClipBox {
+pub(super) fn moved(clip: ClipBox, [x, y]: [i32; 2]) -> ClipBox {
     let add = |coordinate: i16, by: i32| (i32::from(coordinate) + by).clamp(i16::MIN.into(), i16::MAX.into()) as i16;
     ClipBox { x1: add(clip.x1, x), y1: add(clip.y1, y), x2: add(clip.x2, x), y2: add(clip.y2, y) }
 }

@@ -16,8 +16,10 @@
 mod access;
 mod batches;
 mod closing;
+pub mod compose;
 mod display;
 mod draw;
+pub mod glyphs;
 pub mod lists;
 mod moves;
 mod pixmaps;

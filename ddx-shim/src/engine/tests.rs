@@ -1,9 +1,12 @@
 //! The engine on a card of its own, without a server.
 
+use super::compose::{Cover, Ink, Request, Sampled, Surface};
+use super::glyphs::Glyph;
 use super::lists::Onto;
 use super::pixmaps::Place;
 use super::*;
 use crate::format::raster;
+use zga_abi::format::{ComposeOperator, PictureFormat, Repeat};
 use zga_driver::{ClipBox, ListRectangle};
 
 /// X's function Copy.
@@ -206,4 +209,88 @@ fn clip_of_any_number_of_boxes_is_drawn_through() {
     let expected = |index: usize| if (index % 128 + index / 128).is_multiple_of(2) { 5 ^ 3 } else { 5 };
     let wrong = (0..128 * 128).find(|&index| found[index / 128 * pitch + index % 128] != expected(index));
     assert_eq!(wrong, None);
+}
+
+/// A surface of 16 x 4 pixels, each `value`, and its picture.
+fn surface(engine: &mut Engine, format: PictureFormat, value: u8) -> Surface {
+    let (size, bytes) = ([16, 4], format.bytes());
+    let pixmap = engine.create_pixmap((16, 4), 8 * bytes, Wanted::Anywhere);
+    assert!(engine.upload(pixmap, (0, 0), (16 * bytes, 4), &[value; 256], 16 * bytes as usize));
+    Surface { pixmap, size, format }
+}
+
+/// All of a destination, through one box.
+fn over(source: Ink, mask: Cover, onto: Surface) -> Request<'static> {
+    let clips = &[ClipBox { x1: 1, y1: 1, x2: 4, y2: 2 }];
+    Request { operator: ComposeOperator::Over, source, mask, onto, clips, moved: [1, 0] }
+}
+
+const ALL: ListRectangle = ListRectangle { x: 0, y: 0, width: 16, height: 4 };
+
+#[test]
+fn compose_through_a_moved_box_and_a_mask() {
+    let mut engine = engine(4 << 20, 0);
+    let onto = surface(&mut engine, PictureFormat::Argb8888, 0);
+    let mask = surface(&mut engine, PictureFormat::Alpha8, 0x80);
+    let mask = Sampled { surface: mask, offset: [0; 2], repeat: Repeat::Normal, transform: None };
+    let request = over(Ink::Colour(0xFF40_8000), Cover::Unified(Ink::Sampled(mask)), onto);
+    assert!(engine.compose(&request, ALL));
+    let found = pixels(&mut engine, onto.pixmap);
+    assert_eq!(found[16..24], [0, 0, 0x8020_4000, 0x8020_4000, 0x8020_4000, 0, 0, 0]);
+    assert!(found[..16].iter().chain(&found[32..]).all(|pixel| *pixel == 0));
+}
+
+#[test]
+fn compose_image_of_the_destination_is_refused_but_for_a_copy() {
+    let mut engine = engine(4 << 20, 0);
+    let onto = surface(&mut engine, PictureFormat::Argb8888, 0x11);
+    let sampled = |offset| Ink::Sampled(Sampled { surface: onto, offset, repeat: Repeat::None, transform: None });
+    assert!(!engine.compose(&over(sampled([0, 1]), Cover::None, onto), ALL));
+    let copy = Request { operator: ComposeOperator::Source, ..over(sampled([0, 1]), Cover::None, onto) };
+    assert!(!engine.compose(&copy, ALL), "it would write what it reads");
+    assert!(engine.compose(&copy, ListRectangle { height: 1, y: 1, ..ALL }));
+}
+
+#[test]
+fn compose_surface_that_is_not_the_pixmap_is_refused() {
+    let mut engine = engine(4 << 20, 0);
+    let onto = surface(&mut engine, PictureFormat::Argb8888, 0);
+    let black = |onto| over(Ink::Colour(0x8000_0000), Cover::None, onto);
+    assert!(!engine.compose(&black(Surface { size: [17, 4], ..onto }), ALL));
+    assert!(!engine.compose(&black(Surface { format: PictureFormat::Rgb565, ..onto }), ALL));
+    engine.access(onto.pixmap).expect("pixels");
+    assert!(!engine.compose(&black(onto), ALL), "it is open");
+    engine.finish();
+    assert!(engine.compose(&black(onto), ALL));
+}
+
+/// Two glyphs of two pixels each, 0x80 and 0x90, at these columns of row 1.
+fn glyphs(engine: &mut Engine, columns: [i32; 2]) -> [Glyph; 2] {
+    let pixmap = engine.create_pixmap((2, 1), 8, Wanted::InHostMemory);
+    if let Some(Pixmap { place: Place::Host(words), .. }) = engine.pixmaps.get_mut(pixmap) {
+        words[0] = 0x9080;
+    }
+    columns.map(|x| Glyph { pixmap, x, y: 1, width: 2, height: 1, format: PictureFormat::Alpha8 })
+}
+
+#[test]
+fn compose_glyphs_added_up_first_or_one_by_one() {
+    let mut engine = engine(4 << 20, 0);
+    let mut found = |columns, mask, operator| {
+        let onto = surface(&mut engine, PictureFormat::Alpha8, 0x40);
+        let glyphs = glyphs(&mut engine, columns);
+        let request = Request { operator, ..over(Ink::Colour(u32::MAX), Cover::None, onto) };
+        assert!(engine.compose_glyphs(&request, &glyphs, mask));
+        // Row 1 begins after the 64 bytes of row 0.
+        pixels(&mut engine, onto.pixmap)[16..18].iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>()
+    };
+    let (over, source) = (ComposeOperator::Over, ComposeOperator::Source);
+    let alpha = Some(PictureFormat::Alpha8);
+    // The box holds columns 2 to 4.
+    let apart = [0x40, 0x40, 0xA0, 0xAC, 0xA0, 0x40, 0x40, 0x40];
+    assert_eq!(found([2, 4], None, over), apart);
+    assert_eq!(found([2, 4], alpha, over), apart, "the sum is the same");
+    assert_eq!(found([2, 3], None, over), [0x40, 0x40, 0xA0, 0xD6, 0xAC, 0x40, 0x40, 0x40]);
+    assert_eq!(found([2, 3], alpha, over), [0x40, 0x40, 0xA0, 0xFF, 0xAC, 0x40, 0x40, 0x40]);
+    assert_eq!(found([1, 4], alpha, source), [0x40, 0x40, 0x90, 0, 0x80, 0x40, 0x40, 0x40], "all of the box");
 }

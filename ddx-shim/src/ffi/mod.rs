@@ -12,7 +12,8 @@
 //! | [`cursor`] | the hardware cursor |
 //! | [`exa`] | EXA's hooks: pixmaps, accesses, fills, copies |
 //! | [`gc`] | drawing requests: lists |
-//! | [`render`] | text, trapezoids and triangles of RENDER |
+//! | [`render`] | compositions, text, trapezoids and triangles of RENDER |
+//! | [`pictures`] | pictures, masks and glyphs of RENDER, as the engine has them |
 //! | [`pixels`] | pixmaps opened for the server's own renderer |
 //!
 //! # What all SAFETY comments here rest on
@@ -41,6 +42,7 @@ mod exa;
 mod gc;
 mod modes;
 mod module;
+mod pictures;
 mod pixels;
 mod render;
 mod screen;

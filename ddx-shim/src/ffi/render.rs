@@ -1,19 +1,23 @@
-//! Requests of RENDER that go to the server's own renderer in one piece, past EXA.
+//! Requests of RENDER, past EXA: compositions and text go to the card, and what it does not do to the server's own renderer in
+//! one piece.
 //!
 //! Text: EXA would compose it glyph by glyph. Trapezoids and triangles: EXA's way is not the stock server's. It takes the
 //! source's place from each trapezoid in turn and not from the first, and composes in the box around them alone, also
-//! with operators that change what lies outside. Compositions: EXA makes fills and copies of some, which the card draws; it
-//! cuts them at the clip of the source, which the stock server does not look at, misplaces tiles, and copies within a pixmap
-//! as if all were read first.
+//! with operators that change what lies outside. Compositions: of the fills and copies that EXA could make it cuts some at the
+//! clip of the source, which the stock server does not look at, misplaces tiles, and copies within a pixmap as if all were read
+//! first; the engine makes fills and copies of the same ones without all that, and leaves small ones to the renderer.
 
 use std::ffi::c_int;
 
+use super::exa;
+use super::pictures::{self, Composite};
 use super::pixels::Open;
-use super::screen;
+use super::screen::{self, with_engine};
 use super::server::{
     self, CARD8, CARD16, DrawablePtr, GlyphListPtr, GlyphPtr, INT16, PictFormatPtr, PicturePtr, PictureScreenRec,
     ScreenPtr, xTrapezoid, xTriangle,
 };
+use zga_driver::ListRectangle;
 
 /// RENDER's structure of a screen; null without RENDER.
 ///
@@ -180,19 +184,13 @@ unsafe fn open_picture(open: &mut Open, picture: PicturePtr) -> bool {
     }
 }
 
-/// A source that EXA makes the right fill or copy of: without clip, with pixels of its own, and not repeated, for EXA puts tiles
-/// where they belong on windows in the screen's corner only.
+/// EXA's functions, which number the pixmaps of a screen.
 ///
 /// # Safety
-/// As for [`draw`].
-unsafe fn is_plain(from: PicturePtr, onto: PicturePtr) -> bool {
-    // SAFETY: the caller vouches for it.
-    unsafe {
-        let Some(drawable) = (*from).pDrawable.as_ref() else { return true };
-        (*from).clientClip.is_null()
-            && ((*from).repeat() == 0 || (drawable.width, drawable.height) == (1, 1))
-            && screen::pixmap_of((*from).pDrawable).0 != screen::pixmap_of((*onto).pDrawable).0
-    }
+/// The screen is one of this driver's.
+unsafe fn functions(pscreen: ScreenPtr) -> Option<exa::Functions> {
+    // SAFETY: the caller vouches for it; no reference to the state lives on.
+    unsafe { screen::of_screen(pscreen)?.exa }
 }
 
 unsafe extern "C" fn composite(
@@ -216,18 +214,58 @@ unsafe extern "C" fn composite(
                 composite(operator, from, mask, onto, x, y, mask_x, mask_y, onto_x, onto_y, width, height);
             }
         };
-        if mask.is_null()
-            && is_plain(from, onto)
-            && let Some(exa) = screen::of_screen((*(*onto).pDrawable).pScreen).and_then(|screen| screen.render.exa)
-        {
-            call(exa);
-            return;
-        }
         if !mask.is_null() {
             validate(mask);
         }
+        validate(from);
+        let pscreen = (*(*onto).pDrawable).pScreen;
+        let composite = Composite {
+            operator,
+            source: (from, [x, y]),
+            mask: (mask, [mask_x, mask_y]),
+            onto: (onto, [onto_x, onto_y]),
+        };
+        let drawn = functions(pscreen).and_then(|exa| composite.request(exa)).is_some_and(|(request, [x, y])| {
+            let (Ok(x), Ok(y)) = (i16::try_from(x), i16::try_from(y)) else { return false };
+            let rectangle = ListRectangle { x, y, width, height };
+            with_engine("Composite", pscreen, false, |engine, _| engine.compose(&request, rectangle))
+        });
+        if drawn {
+            return;
+        }
         let more = |open: &mut Open, _| mask.is_null() || open_picture(open, mask);
         draw(from, onto, more, call);
+    }
+}
+
+/// Has the card draw text. `None` or false: it is the renderer's.
+///
+/// # Safety
+/// As for [`glyphs`].
+unsafe fn glyphs_by_card(
+    operator: CARD8,
+    from: PicturePtr,
+    onto: PicturePtr,
+    format: PictFormatPtr,
+    at: [INT16; 2],
+    (count, lists, letters): (c_int, GlyphListPtr, *mut GlyphPtr),
+) -> Option<bool> {
+    // SAFETY: the caller vouches for it.
+    unsafe {
+        let pscreen = (*(*onto).pDrawable).pScreen;
+        let exa = functions(pscreen)?;
+        let mask = pictures::mask_format(format)?;
+        if count <= 0 {
+            return None;
+        }
+        // The source's place belongs to the first list's.
+        let first = [(*lists).xOff, (*lists).yOff];
+        let none = (std::ptr::null_mut(), [0; 2]);
+        let composite = Composite { operator, source: (from, at), mask: none, onto: (onto, first) };
+        let (request, place) = composite.request(exa)?;
+        let corner = [place[0] - i32::from(first[0]), place[1] - i32::from(first[1])];
+        let list = pictures::glyphs(pscreen, corner, count, lists, letters, exa)?;
+        Some(with_engine("Glyphs", pscreen, false, |engine, _| engine.compose_glyphs(&request, &list, mask)))
     }
 }
 
@@ -245,6 +283,10 @@ unsafe extern "C" fn glyphs(
     // SAFETY: the server calls with pictures of one of this driver's screens, and lists of letters that live meanwhile; a
     // letter without picture has none to open.
     unsafe {
+        validate(from);
+        if glyphs_by_card(operator, from, onto, format, [x, y], (count, lists, letters)) == Some(true) {
+            return;
+        }
         let more = |open: &mut Open, pscreen| {
             let total: usize =
                 (0..usize::try_from(count).unwrap_or(0)).map(|place| usize::from((*lists.add(place)).len)).sum();
