@@ -90,9 +90,11 @@ impl Processor {
             PaintWords { words, first }
         };
         let (from, through) = (paint(9), paint(9 + compose::PAINT_WORDS));
+        let kinds = compose::COLOUR..=compose::TRANSFORMED;
+        from.word(0).require(kinds.contains(&from.word(0).value))?;
         let source = match from.check(memory, &onto)? {
             Kind::Paint(paint) => paint,
-            Kind::None | Kind::Inline(_) => return from.word(0).mean(None),
+            Kind::None | Kind::Inline(_) => return Err(from.word(0).refuse(FaultCode::BadValue)),
         };
         let mask = match through.check(memory, &onto)? {
             Kind::Paint(paint) => Mask::Paint(paint),
