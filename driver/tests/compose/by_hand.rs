@@ -1,10 +1,10 @@
-//! Compositions through the driver: parts of images, long lists, glyphs of any size, what is refused.
+//! Pictures whose pixels can be told by hand: parts of images, a turn by half, long lists, glyphs of any size.
 
 use zga_abi::format::{BitmapFormat, ComposeOperator, PictureFormat, Repeat};
 use zga_device::{Card, CardBus, CardOptions};
 use zga_driver::{
-    ClipBox, Composition, Driver, DriverError, DriverOptions, Image, ImageError, ListRectangle, Mask, MaskGlyph, Paint,
-    Picture, Rectangle, Submit, Transform,
+    ClipBox, Composition, Driver, DriverOptions, Image, ListRectangle, Mask, MaskGlyph, Paint, Picture, Rectangle,
+    Submit, Transform,
 };
 
 const WHITE: u32 = 0xFFFF_FFFF;
@@ -131,32 +131,4 @@ fn compose_glyphs_of_any_size_and_stride() {
     let colours = MaskGlyph { x: 0, y: 0, width: 1, height: 1, rows: &[0, 0x80, 0xFF, 0], stride: 4 };
     driver.compose_glyphs(&composition, PictureFormat::Argb8888, true, [colours]).expect("sent");
     assert_eq!(read(&mut driver, &onto)[0][0], 0xFFFF_8000);
-}
-
-#[test]
-fn compose_what_cannot_be_is_refused_before_it_is_sent() {
-    let (_card, mut driver) = open();
-    let (from, onto) = (image(&mut driver, 8, 8, 0), image(&mut driver, 8, 8, 0));
-    let paint = |picture, offset| Paint::Image { picture, offset, repeat: Repeat::None, transform: None };
-    let rectangle = [ListRectangle { x: 0, y: 0, width: 1, height: 1 }];
-    let format = Picture { format: PictureFormat::Rgb565, ..picture(&from) };
-    let outside = Picture { part: Some(Rectangle { x: 0, y: 0, right: 9, bottom: 1 }), ..picture(&from) };
-    let empty = Picture { part: Some(Rectangle { x: 3, y: 0, right: 3, bottom: 1 }), ..picture(&from) };
-    let mut refused = |source| driver.compose(&over(source, picture(&onto)), &rectangle);
-    let differ = refused(paint(format, [0, 0]));
-    assert!(matches!(differ, Err(DriverError::Image(ImageError::FormatsDiffer { .. }))), "{differ:?}");
-    for part in [outside, empty] {
-        let beyond = refused(paint(part, [0, 0]));
-        assert!(matches!(beyond, Err(DriverError::Image(ImageError::Outside { side: "source", .. }))), "{beyond:?}");
-    }
-    let far = refused(paint(picture(&from), [0, -65536]));
-    assert!(matches!(far, Err(DriverError::BadOption { name: "compose offset", .. })), "{far:?}");
-    assert_eq!(refused(paint(picture(&onto), [0, 0])), Err(ImageError::Overlap.into()));
-    let composition = over(Paint::Colour(0), picture(&onto));
-    let short = MaskGlyph { x: 0, y: 0, width: 4, height: 2, rows: &[0; 7], stride: 4 };
-    let bits = driver.compose_glyphs(&composition, PictureFormat::Alpha8, false, [short]);
-    assert!(matches!(bits, Err(DriverError::Image(ImageError::Bits { needed: 8, found: 7, .. }))), "{bits:?}");
-    let format = driver.compose_glyphs(&composition, PictureFormat::Rgb565, false, []);
-    assert!(matches!(format, Err(DriverError::BadOption { name: "format of glyphs", .. })), "{format:?}");
-    driver.finish().expect("nothing of it was sent");
 }
