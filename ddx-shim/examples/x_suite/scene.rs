@@ -802,7 +802,10 @@ impl Scene {
     fn drawn_picture(&self, random: &mut Random) -> (usize, usize) {
         loop {
             let pic = random.below(self.pictures.len() as u32) as usize;
-            if let Origin::Surface(on, _) = self.pictures[pic] {
+            // What lies in the byte that is nobody's goes from surface to surface, and is seen in this one alone.
+            if let Origin::Surface(on, _) = self.pictures[pic]
+                && !self.surfaces[on].is_without_alpha()
+            {
                 return (pic, on);
             }
         }
