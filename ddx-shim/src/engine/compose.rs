@@ -406,17 +406,10 @@ impl Engine {
         let Some(mask) = mask else { return false };
         let operator = request.operator;
         // Boxes of a clip do not overlap, so it is all the same whether entries or boxes come first.
-        let mut first = true;
-        for clips in scratch.clips.chunks(MOST_CLIPS) {
-            let composition = Composition { operator, source, mask, onto, origin: [0, 0], clips };
-            if let Err(error) = encode(driver, pixmaps, &composition) {
-                let lost = !(first && is_before(&error));
-                return self.failed(error, lost.then_some(work), &numbers);
-            }
-            first = false;
-        }
-        self.drawn(Ok(()), &numbers, work);
-        true
+        let encoded = scratch.clips.chunks(MOST_CLIPS).try_for_each(|clips| {
+            encode(driver, pixmaps, &Composition { operator, source, mask, onto, origin: [0, 0], clips })
+        });
+        self.drawn(encoded, &numbers, work)
     }
 
     /// Fills or copies an area.
@@ -445,44 +438,17 @@ impl Engine {
         let [x, y] = [area.x1, area.y1].map(|number| number as i16);
         let [width, height] = [area.x2 - area.x1, area.y2 - area.y1].map(|number| number as u16);
         let list = [ListRectangle { x, y, width, height }];
-        let mut first = true;
-        for clips in scratch.clips.chunks(MOST_CLIPS) {
+        let encoded = scratch.clips.chunks(MOST_CLIPS).try_for_each(|clips| {
             let canvas = Canvas { drawable, origin: [0, 0], clips, raster: Raster::new(RasterOperation::Copy) };
-            let encoded = match (plain, from) {
+            match (plain, from) {
                 (Plain::Copy(_, offset), Some(from)) => driver.copy_list(from, *offset, &canvas, &list),
                 (Plain::Fill(value), _) => driver.fill_list(&canvas, *value, &list),
-                (Plain::Copy(..), None) => return false,
-            };
-            if let Err(error) = encoded {
-                let lost = !(first && is_before(&error));
-                return self.failed(error, lost.then_some(work), &numbers);
+                // A copy has a source: see above.
+                (Plain::Copy(..), None) => Ok(()),
             }
-            first = false;
-        }
-        self.drawn(Ok(()), &numbers, work);
-        true
+        });
+        self.drawn(encoded, &numbers, work)
     }
-
-    /// Takes note of an error. With `work` something was encoded, and the request is not done again; without, the renderer does it.
-    fn failed(&mut self, error: DriverError, work: Option<u64>, numbers: &[usize]) -> bool {
-        match work {
-            Some(work) => self.drawn(Err(error), numbers, work),
-            None => self.report(&error),
-        }
-        work.is_some()
-    }
-}
-
-/// An error of a call that was refused before anything was encoded.
-const fn is_before(error: &DriverError) -> bool {
-    matches!(
-        error,
-        DriverError::Image(_)
-            | DriverError::BadOption { .. }
-            | DriverError::PacketTooLong { .. }
-            | DriverError::InsideScene { .. }
-            | DriverError::UnknownTarget { .. }
-    )
 }
 
 #[cfg(test)]

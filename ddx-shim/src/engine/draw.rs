@@ -1,7 +1,8 @@
-//! Drawing as EXA asks for it: one call prepares, any number draw, one ends.
+//! Drawing as EXA asks for it: one call prepares, any number draw, one ends. What they draw is encoded as one list at the end.
 
-use zga_driver::{Raster, Rectangle};
+use zga_driver::{Canvas, DriverError, ListRectangle, Raster};
 
+use super::lists::work_of;
 use super::pixmaps::{Pixmap, Place};
 use super::{Engine, Image};
 use crate::format::raster;
@@ -13,20 +14,16 @@ pub(super) enum Current {
     Nothing,
     /// Fills.
     Solid { pixmap: usize, value: u32, raster: Raster },
-    /// Copies.
-    Copy { from: usize, to: usize, raster: Raster },
+    /// Copies; the offset leads from a pixel to its source, and is that of the rectangles that wait.
+    Copy { from: usize, to: usize, raster: Raster, offset: [i32; 2] },
 }
 
-/// A rectangle in the corners that EXA has; `None` if it is empty or begins left of or above the pixmap.
-fn rectangle(x: i32, y: i32, right: i32, bottom: i32) -> Option<Rectangle> {
-    let number = |number: i32| u32::try_from(number).ok();
-    let rectangle = Rectangle { x: number(x)?, y: number(y)?, right: number(right)?, bottom: number(bottom)? };
-    (rectangle.x < rectangle.right && rectangle.y < rectangle.bottom).then_some(rectangle)
-}
-
-/// Pixels of a rectangle.
-pub(super) const fn area(rectangle: Rectangle) -> u64 {
-    (rectangle.right - rectangle.x) as u64 * (rectangle.bottom - rectangle.y) as u64
+/// A rectangle in the corners that EXA has; `None` if it is empty or leaves the pixmaps that the card takes.
+fn rectangle(x: i32, y: i32, right: i32, bottom: i32) -> Option<ListRectangle> {
+    let (left, top) = (x.try_into().ok()?, y.try_into().ok()?);
+    let [width, height] = [right.checked_sub(x)?, bottom.checked_sub(y)?].map(|side| u16::try_from(side).ok());
+    let rectangle = ListRectangle { x: left, y: top, width: width?, height: height? };
+    (rectangle.width > 0 && rectangle.height > 0).then_some(rectangle)
 }
 
 /// The image that a pixmap's pixels are in.
@@ -51,15 +48,7 @@ impl Engine {
 
     /// Fills a rectangle as prepared; right and bottom are exclusive.
     pub fn solid(&mut self, x: i32, y: i32, right: i32, bottom: i32) {
-        let Current::Solid { pixmap, value, raster } = self.current else { return };
-        let Some(rectangle) = rectangle(x, y, right, bottom) else { return };
-        let Some(onto) = self.pixmaps.get(pixmap).and_then(|pixmap| image(&self.frame, pixmap)) else { return };
-        let filled = if raster == Raster::new(zga_abi::format::RasterOperation::Copy) {
-            self.driver.fill(onto, rectangle, value)
-        } else {
-            self.driver.fill_rop(onto, rectangle, value, raster)
-        };
-        self.drawn(filled, &[pixmap], area(rectangle));
+        self.scratch.rectangles.extend(rectangle(x, y, right, bottom));
     }
 
     /// Prepares copies between pixmaps of one depth, or within one.
@@ -72,30 +61,63 @@ impl Engine {
         if format(from) != format(to) {
             return false;
         }
-        self.current = Current::Copy { from, to, raster };
+        self.current = Current::Copy { from, to, raster, offset: [0; 2] };
         true
     }
 
     /// Copies a rectangle as prepared.
     pub fn copy(&mut self, from: (i32, i32), to: (i32, i32), width: i32, height: i32) {
-        let Current::Copy { from: source, to: onto, raster } = self.current else { return };
-        let Some(rectangle) = rectangle(to.0, to.1, to.0 + width, to.1 + height) else { return };
-        let (Ok(x), Ok(y)) = (u32::try_from(from.0), u32::try_from(from.1)) else { return };
-        let image = |number| self.pixmaps.get(number).and_then(|pixmap| image(&self.frame, pixmap));
-        let (Some(read), Some(written)) = (image(source), image(onto)) else { return };
-        let copied = self.driver.copy_rop(read, [x, y], written, rectangle, raster);
-        self.drawn(copied, &[source, onto], 2 * area(rectangle));
+        let Current::Copy { offset, .. } = self.current else { return };
+        let wanted = [from.0 - to.0, from.1 - to.1];
+        if wanted != offset {
+            self.encode_prepared();
+            if let Current::Copy { offset, .. } = &mut self.current {
+                *offset = wanted;
+            }
+        }
+        self.scratch.rectangles.extend(rectangle(to.0, to.1, to.0 + width, to.1 + height));
     }
 
     /// Ends what was prepared.
     pub fn done(&mut self) {
+        self.encode_prepared();
         self.current = Current::Nothing;
     }
 
-    /// Takes note of an operation that was encoded, or of why it was not.
-    pub(super) fn drawn(&mut self, encoded: Result<(), zga_driver::DriverError>, pixmaps: &[usize], work: u64) {
+    /// Encodes the rectangles that wait.
+    fn encode_prepared(&mut self) {
+        if self.scratch.rectangles.is_empty() {
+            return;
+        }
+        let rectangles = std::mem::take(&mut self.scratch.rectangles);
+        let place = |number| self.pixmaps.get(number).and_then(|pixmap| image(&self.frame, pixmap));
+        let work = work_of(&rectangles);
+        match self.current {
+            Current::Nothing => {}
+            Current::Solid { pixmap, value, raster } => {
+                let Some(onto) = place(pixmap) else { return };
+                let filled = self.driver.fill_list(&Canvas::whole(onto, raster), value, &rectangles);
+                self.drawn(filled, &[pixmap], work);
+            }
+            Current::Copy { from, to, raster, offset } => {
+                let (Some(read), Some(onto)) = (place(from), place(to)) else { return };
+                let copied = self.driver.copy_list(read, offset, &Canvas::whole(onto, raster), &rectangles);
+                self.drawn(copied, &[from, to], 2 * work);
+            }
+        }
+        self.scratch.rectangles = rectangles;
+        self.scratch.rectangles.clear();
+    }
+
+    /// Takes note of an operation that was encoded, or of why it was not. False: nothing of it was encoded, and the
+    /// server's renderer can do it.
+    pub(super) fn drawn(&mut self, encoded: Result<(), DriverError>, pixmaps: &[usize], work: u64) -> bool {
         if let Err(error) = encoded {
             self.report(&error);
+            // Other errors are those of sending, which the driver meets with all of the operation encoded.
+            if !matches!(error, DriverError::CardFault(_) | DriverError::Timeout { .. }) {
+                return false;
+            }
         }
         let batch = self.batches.encoded();
         for &number in pixmaps {
@@ -104,5 +126,6 @@ impl Engine {
             }
         }
         self.encoded(work);
+        true
     }
 }

@@ -3,6 +3,7 @@
 use zga_driver::{BitmapGlyph, Canvas, ClipBox, Drawable, ListRectangle, Point, Raster, Segment};
 
 use super::Engine;
+use super::closing::closes;
 use super::draw::image;
 
 /// What a list is drawn onto.
@@ -20,19 +21,70 @@ pub struct Onto<'a> {
     pub raster: Raster,
 }
 
-/// Scratch of the lists, kept from call to call.
+/// Points as the server has them.
+#[derive(Clone, Copy, Debug)]
+pub struct Points<'a> {
+    /// Places.
+    pub list: &'a [Point],
+    /// Each after the first is a step from the one before.
+    pub steps: bool,
+}
+
+impl Points<'_> {
+    /// The places from the drawable's origin on. Sums are those of the server's renderer, in 16 bits.
+    fn places(self) -> impl Iterator<Item = Point> {
+        let mut at = Point { x: 0, y: 0 };
+        self.list.iter().map(move |point| {
+            let before = if self.steps { at } else { Point { x: 0, y: 0 } };
+            at = Point { x: before.x.wrapping_add(point.x), y: before.y.wrapping_add(point.y) };
+            at
+        })
+    }
+}
+
+/// Room for what lists are made of, kept from call to call.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     pub clips: Vec<ClipBox>,
     /// Glyphs added up.
     pub mask: Vec<u8>,
+    points: Vec<Point>,
+    pub rectangles: Vec<ListRectangle>,
+}
+
+/// Work of rectangles, in pixels.
+pub(super) fn work_of(rectangles: &[ListRectangle]) -> u64 {
+    rectangles.iter().map(|one| ENTRY + u64::from(one.width) * u64::from(one.height)).sum()
 }
 
 impl Engine {
     /// Fills rectangles, in their order. False, here and below: the server's renderer has to do it.
     pub fn fill_list(&mut self, onto: &Onto<'_>, value: u32, rectangles: &[ListRectangle]) -> bool {
-        let work = rectangles.iter().map(|one| ENTRY + u64::from(one.width) * u64::from(one.height)).sum();
-        self.list(onto, work, |driver, canvas| driver.fill_list(canvas, value, rectangles))
+        self.list(onto, work_of(rectangles), |driver, canvas| driver.fill_list(canvas, value, rectangles))
+    }
+
+    /// Fills runs of pixels, each `widths` pixels long from its start to the right; those that are not longer than 0 are none.
+    pub fn spans(&mut self, onto: &Onto<'_>, value: u32, starts: &[Point], widths: &[i32]) -> bool {
+        let runs = starts.iter().zip(widths).filter(|(_, width)| **width > 0);
+        let spans = runs.map(|(start, &width)| (*start, u16::try_from(width).ok()));
+        self.rows(onto, value, spans)
+    }
+
+    /// Fills single pixels.
+    pub fn points(&mut self, onto: &Onto<'_>, value: u32, points: Points<'_>) -> bool {
+        self.rows(onto, value, points.places().map(|place| (place, Some(1))))
+    }
+
+    /// Fills runs of pixels; false if one is too long for a list.
+    fn rows(&mut self, onto: &Onto<'_>, value: u32, mut rows: impl Iterator<Item = (Point, Option<u16>)>) -> bool {
+        let mut rectangles = std::mem::take(&mut self.scratch.rectangles);
+        let row = |(Point { x, y }, width): (Point, Option<u16>)| {
+            width.map(|width| rectangles.push(ListRectangle { x, y, width, height: 1 })).is_some()
+        };
+        let drawn = rows.all(row) && self.fill_list(onto, value, &rectangles);
+        rectangles.clear();
+        self.scratch.rectangles = rectangles;
+        drawn
     }
 
     /// Lines of one pixel's width, each by itself; `last`: with its last pixel.
@@ -41,16 +93,33 @@ impl Engine {
         self.list(onto, work, |driver, canvas| driver.segments(canvas, value, segments, last))
     }
 
-    /// Lines of one pixel's width from point to point; `last`: with the very last pixel.
-    pub fn polyline(&mut self, onto: &Onto<'_>, value: u32, points: &[Point], last: bool) -> bool {
-        let work = points.windows(2).map(|two| ENTRY + length([two[0].x, two[0].y], [two[1].x, two[1].y])).sum();
-        self.list(onto, work, |driver, canvas| driver.polyline(canvas, value, points, last))
+    /// Lines of one pixel's width from point to point; `cap`: with the very last pixel, if it is not the first of a figure that
+    /// [`closes`], `corner` being the drawable's upper left in the clip's coordinates.
+    pub fn polyline(&mut self, onto: &Onto<'_>, value: u32, points: Points<'_>, corner: [i32; 2], cap: bool) -> bool {
+        let mut places = std::mem::take(&mut self.scratch.points);
+        let line = if points.steps {
+            places.extend(points.places());
+            &places
+        } else {
+            points.list
+        };
+        let last = cap && !closes(line, corner, onto.clips);
+        let work = line.windows(2).map(|two| ENTRY + length([two[0].x, two[0].y], [two[1].x, two[1].y])).sum();
+        let drawn = self.list(onto, work, |driver, canvas| driver.polyline(canvas, value, line, last));
+        places.clear();
+        self.scratch.points = places;
+        drawn
     }
 
     /// Letters: their set bits in one colour.
-    pub fn letters(&mut self, onto: &Onto<'_>, value: u32, letters: &[BitmapGlyph<'_>]) -> bool {
-        let work = letters.iter().map(|one| ENTRY + u64::from(one.width) * u64::from(one.height)).sum();
-        self.list(onto, work, |driver, canvas| driver.expand(canvas, value, None, letters.iter().copied()))
+    pub fn letters<'b>(
+        &mut self,
+        onto: &Onto<'_>,
+        value: u32,
+        letters: &(impl Iterator<Item = BitmapGlyph<'b>> + Clone),
+    ) -> bool {
+        let work = letters.clone().map(|one| ENTRY + u64::from(one.width) * u64::from(one.height)).sum();
+        self.list(onto, work, |driver, canvas| driver.expand(canvas, value, None, letters.clone()))
     }
 
     /// Encodes a list.
@@ -80,8 +149,7 @@ impl Engine {
             let canvas = Canvas { drawable: Drawable::Image(image), origin: [x, y], clips, raster: onto.raster };
             encode(&mut self.driver, &canvas)
         });
-        self.drawn(encoded, &[onto.pixmap], work * clips.len().max(1) as u64);
-        true
+        self.drawn(encoded, &[onto.pixmap], work)
     }
 }
 
@@ -102,75 +170,21 @@ pub(super) fn moved(clip: ClipBox, [x, y]: [i32; 2]) -> ClipBox {
     ClipBox { x1: add(clip.x1, x), y1: add(clip.y1, y), x2: add(clip.x2, x), y2: add(clip.y2, y) }
 }
 
-/// Whether the server's renderer leaves a polyline's last pixel out because the figure is closed: it does so when there is
-/// one clip box only and neither end of the last segment is outside of it, and draws the pixel a second time otherwise.
-///
-/// The test for "outside" is the renderer's own, on two coordinates packed into 32 bits, so that coordinates whose
-/// differences leave 16 bits come out the same.
-#[must_use]
-pub fn closes(points: &[Point], origin: [i32; 2], clips: &[ClipBox]) -> bool {
-    let ([clip], [first, .., before, last]) = (clips, points) else {
-        // Of two points that are one the renderer takes the fast way, too.
-        if let ([clip], [first, last]) = (clips, points) {
-            return first == last && inside(*first, origin, *clip);
-        }
-        return false;
-    };
-    first == last && inside(*before, origin, *clip) && inside(*last, origin, *clip)
-}
-
-/// The renderer's test whether a point is in its clip box.
-fn inside(point: Point, [x, y]: [i32; 2], clip: ClipBox) -> bool {
-    let pack = |x: i32, y: i32| (y << 16) | (x & 0xFFFF);
-    let upper_left = pack(i32::from(clip.x1) - x, i32::from(clip.y1) - y);
-    let lower_right = pack(i32::from(clip.x2) - x - 1, i32::from(clip.y2) - y - 1);
-    let point = pack(point.x.into(), point.y.into());
-    let outside = point.wrapping_sub(upper_left) | lower_right.wrapping_sub(point);
-    outside.cast_unsigned() & 0x8000_8000 == 0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const CLIP: ClipBox = ClipBox { x1: 10, y1: 20, x2: 110, y2: 220 };
-
-    fn points(list: &[(i16, i16)]) -> Vec<Point> {
-        list.iter().map(|&(x, y)| Point { x, y }).collect()
-    }
-
     #[test]
-    fn closes_figure_inside_one_box() {
-        let figure = points(&[(0, 0), (50, 3), (20, 90), (0, 0)]);
-        assert!(closes(&figure, [10, 20], &[CLIP]));
-        assert!(!closes(&figure, [9, 20], &[CLIP]), "the last point is left of the box");
-        assert!(!closes(&figure, [10, 20], &[CLIP, ClipBox { x1: 300, x2: 310, ..CLIP }]));
-        assert!(!closes(&figure[..3], [10, 20], &[CLIP]), "the figure is open");
-    }
-
-    #[test]
-    fn closes_only_the_last_segment_counts() {
-        let figure = points(&[(30, 30), (500, 30), (40, 40), (30, 30)]);
-        assert!(closes(&figure, [0, 0], &[CLIP]));
-        let figure = points(&[(30, 30), (40, 40), (500, 30), (30, 30)]);
-        assert!(!closes(&figure, [0, 0], &[CLIP]));
-    }
-
-    #[test]
-    fn closes_point_of_two_ends() {
-        assert!(closes(&points(&[(30, 30), (30, 30)]), [0, 0], &[CLIP]));
-        assert!(!closes(&points(&[(30, 30), (31, 30)]), [0, 0], &[CLIP]));
-    }
-
-    #[test]
-    fn inside_is_inclusive_of_the_box_and_exclusive_of_its_end() {
-        for (x, y, expected) in [(10, 20, true), (109, 219, true), (9, 20, false), (110, 20, false), (10, 220, false)] {
-            assert_eq!(inside(Point { x, y }, [0, 0], CLIP), expected, "{x} {y}");
-        }
+    fn points_steps_add_up_in_16_bits() {
+        let list = [Point { x: 30_000, y: 1 }, Point { x: 30_000, y: -3 }, Point { x: 5_000, y: 0 }];
+        let places = |steps| Points { list: &list, steps }.places().map(|place| (place.x, place.y)).collect::<Vec<_>>();
+        assert_eq!(places(false), [(30_000, 1), (30_000, -3), (5_000, 0)]);
+        assert_eq!(places(true), [(30_000, 1), (-5_536, -2), (-536, -2)]);
     }
 
     #[test]
     fn moved_box_stays_within_16_bits() {
+        const CLIP: ClipBox = ClipBox { x1: 10, y1: 20, x2: 110, y2: 220 };
         assert_eq!(moved(CLIP, [-5, 7]), ClipBox { x1: 5, y1: 27, x2: 105, y2: 227 });
         assert_eq!(moved(CLIP, [40_000, 0]).x2, i16::MAX);
     }

@@ -15,6 +15,7 @@
 
 mod access;
 mod batches;
+mod closing;
 pub mod compose;
 mod display;
 mod draw;

@@ -68,9 +68,13 @@ fn solid_and_copy_are_seen_by_an_access() {
     engine.done();
     assert!(engine.prepare_copy(from, onto, 32, XOR, 5));
     engine.copy((1, 1), (2, 3), 3, 1);
+    // Another offset, and what is empty or nowhere.
+    engine.copy((1, 1), (8, 3), 2, 1);
+    engine.copy((1, 1), (8, 3), 0, 1);
+    engine.copy((1, 1), (70_000, 3), 1, 1);
     engine.done();
     let row: Vec<u32> = pixels(&mut engine, onto)[48..64].to_vec();
-    assert_eq!(row, [0, 0, 5, 5, 5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+    assert_eq!(row, [0, 0, 5, 5, 5, 0, 0, 0, 5, 5, 0, 0, 0, 0, 0, 0]);
 }
 
 #[test]
@@ -83,6 +87,31 @@ fn open_access_refuses_everything_the_card_could_do() {
     assert!(!engine.upload(number, (0, 0), (4, 1), &[0; 4], 4));
     engine.finish();
     assert!(engine.prepare_solid(number, 32, COPY, u32::MAX, 7));
+}
+
+/// Few bytes go behind what the card has still to do, without a wait; many are written in place after it.
+#[test]
+fn upload_comes_after_what_was_drawn_before() {
+    let mut engine = engine(4 << 20, 0);
+    let number = engine.create_pixmap((256, 256), 32, Wanted::Anywhere);
+    for (rows, waits) in [(2, false), (256, true)] {
+        assert!(engine.prepare_solid(number, 32, COPY, u32::MAX, 7));
+        engine.solid(0, 0, 256, 256);
+        engine.done();
+        // Rows of the server's memory are longer than the rectangle's.
+        let bytes: Vec<u8> = (0..256 * 1024).map(|place| if place % 1024 < 1000 { 9 } else { 0 }).collect();
+        assert!(engine.upload(number, (8, 0), (1000, rows), &bytes, 1024));
+        assert_eq!(engine.batches.pending(), !waits, "{rows}");
+        assert!(engine.prepare_solid(number, 32, XOR, u32::MAX, 1));
+        engine.solid(2, 0, 3, 1);
+        engine.done();
+        let found = pixels(&mut engine, number);
+        let pitch = found.len() / 256;
+        assert_eq!(found[..4], [7, 7, 0x0909_0908, 0x0909_0909], "{rows}");
+        assert_eq!(found[250..254], [0x0909_0909, 0x0909_0909, 7, 7], "{rows}");
+        let below = if waits { 0x0909_0909 } else { 7 };
+        assert_eq!(found[2 * pitch + 5], below, "{rows}");
+    }
 }
 
 #[test]

@@ -10,12 +10,12 @@ use std::ffi::{c_int, c_uint, c_void};
 
 use super::screen::{pixmap_of, with_engine};
 use super::server::{self, DrawablePtr, GCOps, GCPtr, ScreenPtr, xRectangle, xSegment};
-use zga_driver::{BitmapGlyph, ClipBox, ListRectangle, Point, Segment};
+use zga_driver::{BitmapGlyph, ClipBox, ListRectangle, Segment};
 
 use super::pixels::Open;
 use super::screen;
 use crate::engine::Engine;
-use crate::engine::lists::{Onto, closes};
+use crate::engine::lists::{Onto, Points};
 use crate::format::raster;
 
 /// The tables of operations.
@@ -86,13 +86,13 @@ unsafe fn tables(below: *const GCOps) -> Tables {
 }
 
 /// EXA's table.
-fn below() -> GCOps {
+fn below() -> &'static GCOps {
     let Some(tables) = TABLES.get() else {
         // A GC that calls here was given the table.
         unreachable!("no GC was made")
     };
-    // SAFETY: EXA's table lives as long as the server.
-    unsafe { *tables.below }
+    // SAFETY: EXA's table lives as long as the server, and nobody writes to it.
+    unsafe { &*tables.below }
 }
 
 /// Has the engine draw a list of a GC.
@@ -155,19 +155,6 @@ unsafe fn list<'a, S, T>(list: *const S, count: c_int) -> &'a [T] {
     }
 }
 
-/// Points with coordinates from the drawable's origin, whatever the mode; `None` if they are so already.
-fn absolute(points: &[Point], mode: c_int) -> Option<Vec<Point>> {
-    (mode == server::CoordModePrevious as c_int).then(|| {
-        let mut at = Point { x: 0, y: 0 };
-        let sums = points.iter().map(|step| {
-            // As the server's renderer adds: in 16 bits.
-            at = Point { x: at.x.wrapping_add(step.x), y: at.y.wrapping_add(step.y) };
-            at
-        });
-        sums.collect()
-    })
-}
-
 /// A solid fill style.
 ///
 /// # Safety
@@ -186,6 +173,45 @@ unsafe fn is_thin(gc: GCPtr) -> bool {
     unsafe { (*gc).lineWidth == 0 && (*gc).lineStyle() == server::LineSolid && is_solid(gc) }
 }
 
+/// Draws what the card has not drawn: by the server's own renderer if `past_exa`, else by EXA.
+///
+/// EXA draws lines along the axes as rectangles, whose ends it draws twice where lines meet, and so not what raster
+/// operations like Xor make of them.
+///
+/// # Safety
+/// `drawable` is the server's; `renderer` draws to it and calls nothing that could come back to this driver.
+unsafe fn otherwise(
+    drawn: bool,
+    past_exa: bool,
+    drawable: DrawablePtr,
+    renderer: impl FnOnce(),
+    exa: impl FnOnce(&GCOps),
+) {
+    if drawn {
+        return;
+    }
+    if past_exa {
+        // SAFETY: the caller vouches for it.
+        unsafe {
+            let mut open = Open::new((*drawable).pScreen);
+            if open.add(drawable) {
+                renderer();
+                return;
+            }
+        }
+    }
+    exa(below());
+}
+
+/// Calls an entry of a table, if it is there.
+macro_rules! call {
+    ($table:expr, $entry:ident, $($argument:expr),*) => {
+        if let Some(entry) = $table.$entry {
+            entry($($argument),*);
+        }
+    };
+}
+
 unsafe extern "C" fn fill_spans(
     drawable: DrawablePtr,
     gc: GCPtr,
@@ -197,28 +223,19 @@ unsafe extern "C" fn fill_spans(
     // SAFETY: the server calls with a drawable, a GC validated for it, and as many points and widths as it says; spans are
     // in the screen's coordinates.
     unsafe {
-        let drawn = is_solid(gc) && {
-            let (starts, lengths): (&[Point], &[c_int]) = (list(points, count), list(widths, count));
-            draw("FillSpans", drawable, gc, (*gc).alu.into(), |engine, onto| {
-                let spans: Option<Vec<ListRectangle>> = starts
-                    .iter()
-                    .zip(lengths)
-                    .filter(|(_, length)| **length > 0)
-                    .map(|(start, &length)| {
-                        let width = u16::try_from(length).ok()?;
-                        Some(ListRectangle { x: start.x, y: start.y, width, height: 1 })
-                    })
-                    .collect();
+        let solid = is_solid(gc);
+        let drawn = solid
+            && draw("FillSpans", drawable, gc, (*gc).alu.into(), |engine, onto| {
                 let onto = Onto { origin: onto.moved, ..*onto };
-                spans.is_some_and(|spans| engine.fill_list(&onto, (*gc).fgPixel, &spans))
-            })
-        };
-        let drawn = drawn
-            || is_solid(gc)
-                && with_pixels(drawable, || server::fbFillSpans(drawable, gc, count, points, widths, sorted));
-        if let (false, Some(below)) = (drawn, below().FillSpans) {
-            below(drawable, gc, count, points, widths, sorted);
-        }
+                engine.spans(&onto, (*gc).fgPixel, list(points, count), list(widths, count))
+            });
+        otherwise(
+            drawn,
+            solid,
+            drawable,
+            || server::fbFillSpans(drawable, gc, count, points, widths, sorted),
+            |exa| call!(exa, FillSpans, drawable, gc, count, points, widths, sorted),
+        );
     }
 }
 
@@ -231,25 +248,28 @@ unsafe extern "C" fn poly_point(
 ) {
     // SAFETY: as above.
     unsafe {
-        let drawn = is_solid(gc) && {
-            let given: &[Point] = list(points, count);
-            draw("PolyPoint", drawable, gc, (*gc).alu.into(), |engine, onto| {
-                let sums = absolute(given, mode);
-                let dots: Vec<_> = sums
-                    .as_deref()
-                    .unwrap_or(given)
-                    .iter()
-                    .map(|dot| ListRectangle { x: dot.x, y: dot.y, width: 1, height: 1 })
-                    .collect();
-                engine.fill_list(onto, (*gc).fgPixel, &dots)
-            })
-        };
-        let drawn =
-            drawn || is_solid(gc) && with_pixels(drawable, || server::fbPolyPoint(drawable, gc, mode, count, points));
-        if let (false, Some(below)) = (drawn, below().PolyPoint) {
-            below(drawable, gc, mode, count, points);
-        }
+        let solid = is_solid(gc);
+        let drawn = solid
+            && draw("PolyPoint", drawable, gc, (*gc).alu.into(), |engine, onto| {
+                engine.points(onto, (*gc).fgPixel, places(points, count, mode))
+            });
+        otherwise(
+            drawn,
+            solid,
+            drawable,
+            || server::fbPolyPoint(drawable, gc, mode, count, points),
+            |exa| call!(exa, PolyPoint, drawable, gc, mode, count, points),
+        );
     }
+}
+
+/// Points as a request has them.
+///
+/// # Safety
+/// As for [`list`].
+unsafe fn places<'a>(points: server::DDXPointPtr, count: c_int, mode: c_int) -> Points<'a> {
+    // SAFETY: the caller vouches for it.
+    Points { list: unsafe { list(points, count) }, steps: mode == server::CoordModePrevious as c_int }
 }
 
 unsafe extern "C" fn polylines(
@@ -261,112 +281,123 @@ unsafe extern "C" fn polylines(
 ) {
     // SAFETY: as above.
     unsafe {
-        let drawn = count > 1 && is_thin(gc) && {
-            let given: &[Point] = list(points, count);
-            draw("Polylines", drawable, gc, (*gc).alu.into(), |engine, onto| {
-                let sums = absolute(given, mode);
-                let line = sums.as_deref().unwrap_or(given);
+        let thin = count > 1 && is_thin(gc);
+        let drawn = thin
+            && draw("Polylines", drawable, gc, (*gc).alu.into(), |engine, onto| {
                 let corner = [(*drawable).x.into(), (*drawable).y.into()];
-                let last = (*gc).capStyle() != server::CapNotLast && !closes(line, corner, onto.clips);
-                engine.polyline(onto, (*gc).fgPixel, line, last)
-            })
-        };
-        let drawn = drawn
-            || count > 1
-                && is_thin(gc)
-                && with_pixels(drawable, || server::fbPolyLine(drawable, gc, mode, count, points));
-        if let (false, Some(below)) = (drawn, below().Polylines) {
-            below(drawable, gc, mode, count, points);
-        }
+                let cap = (*gc).capStyle() != server::CapNotLast;
+                engine.polyline(onto, (*gc).fgPixel, places(points, count, mode), corner, cap)
+            });
+        otherwise(
+            drawn,
+            thin,
+            drawable,
+            || server::fbPolyLine(drawable, gc, mode, count, points),
+            |exa| call!(exa, Polylines, drawable, gc, mode, count, points),
+        );
     }
 }
 
 unsafe extern "C" fn poly_segment(drawable: DrawablePtr, gc: GCPtr, count: c_int, segments: *mut xSegment) {
     // SAFETY: as above.
     unsafe {
-        let drawn = is_thin(gc) && {
-            let given: &[Segment] = list(segments, count);
-            let last = (*gc).capStyle() != server::CapNotLast;
-            draw("PolySegment", drawable, gc, (*gc).alu.into(), |engine, onto| {
-                engine.segments(onto, (*gc).fgPixel, given, last)
-            })
-        };
-        let drawn =
-            drawn || is_thin(gc) && with_pixels(drawable, || server::fbPolySegment(drawable, gc, count, segments));
-        if let (false, Some(below)) = (drawn, below().PolySegment) {
-            below(drawable, gc, count, segments);
-        }
-    }
-}
-
-/// Has the server's own renderer draw, past EXA: that draws lines along the axes as rectangles, whose ends it draws twice
-/// where lines meet, and so not what raster operations like Xor make of them. False: the pixels are not to be had here.
-///
-/// # Safety
-/// `drawable` is the server's; `body` draws to it and calls nothing that could come back to this driver.
-unsafe fn with_pixels(drawable: DrawablePtr, body: impl FnOnce()) -> bool {
-    // SAFETY: the caller vouches for it.
-    unsafe {
-        let mut open = Open::new((*drawable).pScreen);
-        let opened = open.add(drawable);
-        if opened {
-            body();
-        }
-        opened
+        let thin = is_thin(gc);
+        let drawn = thin
+            && draw("PolySegment", drawable, gc, (*gc).alu.into(), |engine, onto| {
+                let given: &[Segment] = list(segments, count);
+                engine.segments(onto, (*gc).fgPixel, given, (*gc).capStyle() != server::CapNotLast)
+            });
+        otherwise(
+            drawn,
+            thin,
+            drawable,
+            || server::fbPolySegment(drawable, gc, count, segments),
+            |exa| call!(exa, PolySegment, drawable, gc, count, segments),
+        );
     }
 }
 
 unsafe extern "C" fn poly_fill_rectangle(drawable: DrawablePtr, gc: GCPtr, count: c_int, rectangles: *mut xRectangle) {
     // SAFETY: as above.
     unsafe {
-        let drawn = is_solid(gc) && {
-            let given: &[ListRectangle] = list(rectangles, count);
-            draw("PolyFillRect", drawable, gc, (*gc).alu.into(), |engine, onto| {
-                engine.fill_list(onto, (*gc).fgPixel, given)
-            })
-        };
-        let drawn =
-            drawn || is_solid(gc) && with_pixels(drawable, || server::fbPolyFillRect(drawable, gc, count, rectangles));
-        if let (false, Some(below)) = (drawn, below().PolyFillRect) {
-            below(drawable, gc, count, rectangles);
-        }
+        let solid = is_solid(gc);
+        let drawn = solid
+            && draw("PolyFillRect", drawable, gc, (*gc).alu.into(), |engine, onto| {
+                engine.fill_list(onto, (*gc).fgPixel, list(rectangles, count))
+            });
+        otherwise(
+            drawn,
+            solid,
+            drawable,
+            || server::fbPolyFillRect(drawable, gc, count, rectangles),
+            |exa| call!(exa, PolyFillRect, drawable, gc, count, rectangles),
+        );
     }
 }
 
-/// The letters of a text with their places, and how far the pen goes.
-///
-/// # Safety
-/// `characters` points to `count` pointers to characters with their bits, which live for `'a`.
-unsafe fn letters<'a>(
-    x: c_int,
-    y: c_int,
-    count: c_uint,
-    characters: *mut server::CharInfoPtr,
-) -> Option<(Vec<BitmapGlyph<'a>>, i32)> {
-    let mut letters = Vec::with_capacity(count as usize);
-    let mut pen = x;
-    for place in 0..count as usize {
-        // SAFETY: the caller vouches for it; a character with pixels has rows padded to 32 bits, as this server asks fonts
-        // for (GLYPHPADBYTES).
-        unsafe {
-            let character = &**characters.add(place);
-            let metrics = &character.metrics;
-            let width = i32::from(metrics.rightSideBearing) - i32::from(metrics.leftSideBearing);
-            let height = i32::from(metrics.ascent) + i32::from(metrics.descent);
-            if let (Ok(width @ 1..), Ok(height @ 1..)) = (u16::try_from(width), u16::try_from(height)) {
-                let bytes = usize::from(width).div_ceil(32) * 4 * usize::from(height);
-                letters.push(BitmapGlyph {
-                    x: i16::try_from(pen + i32::from(metrics.leftSideBearing)).ok()?,
-                    y: i16::try_from(y - i32::from(metrics.ascent)).ok()?,
-                    width,
-                    height,
-                    bits: std::slice::from_raw_parts(character.bits.cast(), bytes),
-                });
-            }
+/// A text: its letters one after the other, from a pen's place on.
+#[derive(Clone, Copy)]
+struct Text<'a> {
+    characters: &'a [server::CharInfoPtr],
+    pen: i32,
+    y: i32,
+}
+
+impl<'a> Text<'a> {
+    /// The text of a request; `None` if a letter lies outside of what 16 bits reach.
+    ///
+    /// # Safety
+    /// `characters` points to `count` pointers to characters with their bits, which live for `'a`.
+    unsafe fn new(x: c_int, y: c_int, count: c_uint, characters: *const server::CharInfoPtr) -> Option<Text<'a>> {
+        // SAFETY: the caller vouches for it.
+        let characters = unsafe { list(characters, c_int::try_from(count).ok()?) };
+        let text = Text { characters, pen: x, y };
+        let mut pen = x;
+        let reaches = characters.iter().all(|&character| {
+            // SAFETY: the caller vouches for it.
+            let metrics = unsafe { &(*character).metrics };
+            let left = pen + i32::from(metrics.leftSideBearing);
             pen += i32::from(metrics.characterWidth);
-        }
+            i16::try_from(left).is_ok() && i16::try_from(y - i32::from(metrics.ascent)).is_ok()
+        });
+        reaches.then_some(text)
     }
-    Some((letters, pen - x))
+
+    /// How far the pen goes.
+    fn advance(self) -> i32 {
+        // SAFETY: who made the text vouched for its characters.
+        self.characters.iter().map(|&character| i32::from(unsafe { (*character).metrics.characterWidth })).sum()
+    }
+}
+
+impl<'a> Iterator for Text<'a> {
+    type Item = BitmapGlyph<'a>;
+
+    fn next(&mut self) -> Option<BitmapGlyph<'a>> {
+        while let Some((&character, rest)) = self.characters.split_first() {
+            self.characters = rest;
+            // SAFETY: who made the text vouched for its characters; one with pixels has rows padded to 32 bits, as this
+            // server asks fonts for (GLYPHPADBYTES).
+            unsafe {
+                let metrics = &(*character).metrics;
+                let left = self.pen + i32::from(metrics.leftSideBearing);
+                self.pen += i32::from(metrics.characterWidth);
+                let width = i32::from(metrics.rightSideBearing) - i32::from(metrics.leftSideBearing);
+                let height = i32::from(metrics.ascent) + i32::from(metrics.descent);
+                if let (Ok(width @ 1..), Ok(height @ 1..)) = (u16::try_from(width), u16::try_from(height)) {
+                    let bytes = usize::from(width).div_ceil(32) * 4 * usize::from(height);
+                    return Some(BitmapGlyph {
+                        x: left as i16,
+                        y: (self.y - i32::from(metrics.ascent)) as i16,
+                        width,
+                        height,
+                        bits: std::slice::from_raw_parts((*character).bits.cast(), bytes),
+                    });
+                }
+            }
+        }
+        None
+    }
 }
 
 unsafe extern "C" fn poly_glyph_blt(
@@ -380,18 +411,20 @@ unsafe extern "C" fn poly_glyph_blt(
 ) {
     // SAFETY: as above, with as many characters as it says.
     unsafe {
-        let drawn = is_solid(gc)
-            && letters(x, y, count, characters).is_some_and(|(letters, _)| {
+        let solid = is_solid(gc);
+        let drawn = solid
+            && Text::new(x, y, count, characters).is_some_and(|text| {
                 draw("PolyGlyphBlt", drawable, gc, (*gc).alu.into(), |engine, onto| {
-                    engine.letters(onto, (*gc).fgPixel, &letters)
+                    engine.letters(onto, (*gc).fgPixel, &text)
                 })
             });
-        let drawn = drawn
-            || is_solid(gc)
-                && with_pixels(drawable, || server::fbPolyGlyphBlt(drawable, gc, x, y, count, characters, base));
-        if let (false, Some(below)) = (drawn, below().PolyGlyphBlt) {
-            below(drawable, gc, x, y, count, characters, base);
-        }
+        otherwise(
+            drawn,
+            solid,
+            drawable,
+            || server::fbPolyGlyphBlt(drawable, gc, x, y, count, characters, base),
+            |exa| call!(exa, PolyGlyphBlt, drawable, gc, x, y, count, characters, base),
+        );
     }
 }
 
@@ -407,22 +440,23 @@ unsafe extern "C" fn image_glyph_blt(
     // SAFETY: as above; a GC that draws text has a font.
     unsafe {
         let font = &(*(*gc).font).info;
-        let drawn = letters(x, y, count, characters).is_some_and(|(letters, width)| {
-            let (ascent, descent) = (i32::from(font.fontAscent), i32::from(font.fontDescent));
+        let drawn = Text::new(x, y, count, characters).is_some_and(|text| {
+            let (ascent, descent, width) = (i32::from(font.fontAscent), i32::from(font.fontDescent), text.advance());
             let background = background(x.min(x + width), y - ascent, width.abs(), ascent + descent);
             background.is_some_and(|background| {
                 // Text on a background knows no raster operation but copy.
                 draw("ImageGlyphBlt", drawable, gc, server::GXcopy, |engine, onto| {
-                    engine.fill_list(onto, (*gc).bgPixel, &[background])
-                        && engine.letters(onto, (*gc).fgPixel, &letters)
+                    engine.fill_list(onto, (*gc).bgPixel, &[background]) && engine.letters(onto, (*gc).fgPixel, &text)
                 })
             })
         });
-        let drawn =
-            drawn || with_pixels(drawable, || server::fbImageGlyphBlt(drawable, gc, x, y, count, characters, base));
-        if let (false, Some(below)) = (drawn, below().ImageGlyphBlt) {
-            below(drawable, gc, x, y, count, characters, base);
-        }
+        otherwise(
+            drawn,
+            true,
+            drawable,
+            || server::fbImageGlyphBlt(drawable, gc, x, y, count, characters, base),
+            |exa| call!(exa, ImageGlyphBlt, drawable, gc, x, y, count, characters, base),
+        );
     }
 }
 

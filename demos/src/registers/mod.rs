@@ -101,7 +101,7 @@ fn unit_doc(name: &str) -> &'static str {
         "subpixel" => "sub-pixel masks",
         "texture" => "texture",
         "shading" => "colours, lights, fog, blending",
-        "bitmap" => "fills, copies, conversions, stretches, transfers",
+        "bitmap" => "fills, copies, conversions, stretches, compositions, transfers",
         "scanout" => "display controller",
         "probe" => "pixel history",
         _ => "",

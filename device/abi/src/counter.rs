@@ -48,7 +48,7 @@ counters! {
     CyclesGeometry "cycles.geometry" "Clocks of transform, clip and setup.",
     CyclesZBuffer "cycles.z_buffer" "Clocks of the Z buffer unit: edge walk, depth compare, depth and colour write.",
     CyclesShading "cycles.shading" "Clocks of the colour interpolators.",
-    CyclesBitmap "cycles.bitmap" "Clocks of fills, copies, conversions, stretches and transfers.",
+    CyclesBitmap "cycles.bitmap" "Clocks of fills, copies, conversions, stretches, compositions and transfers.",
     CyclesScanout "cycles.scanout" "Clocks of frame composition.",
     FrontendPackets "frontend.packets" "Packets executed.",
     FrontendWords "frontend.words" "Words of packets executed, headers included.",

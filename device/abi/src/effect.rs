@@ -57,7 +57,7 @@ bitflags! {
         const TEXTURE = 1 << 7;
         /// Shading unit: colours, lights, fog, blending.
         const SHADING = 1 << 8;
-        /// Bitmap unit: fills, copies, conversions, stretches, transfers.
+        /// Bitmap unit: fills, copies, conversions, stretches, compositions, transfers.
         const BITMAP = 1 << 9;
         /// Display controller.
         const SCANOUT = 1 << 10;

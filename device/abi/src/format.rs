@@ -59,6 +59,7 @@ impl PixelFormat {
 
     /// The stored pixel of an RGBA colour.
     #[must_use]
+    #[inline]
     pub const fn encode(self, [r, g, b, a]: [u8; 4]) -> u32 {
         match self {
             PixelFormat::Xrgb8888 => u32::from_be_bytes([255, r, g, b]),
@@ -69,6 +70,7 @@ impl PixelFormat {
 
     /// The RGBA colour of a stored pixel; 5 and 6 bits are widened by repeating their top bits.
     #[must_use]
+    #[inline]
     pub const fn decode(self, pixel: u32) -> [u8; 4] {
         let [top, r, g, b] = pixel.to_be_bytes();
         match self {
@@ -611,6 +613,7 @@ impl PictureFormat {
 
     /// The ARGB word (alpha in 31:24, blue in 7:0) of a stored pixel; bits beyond the format do not count.
     #[must_use]
+    #[inline]
     pub const fn decode(self, pixel: u32) -> u32 {
         match self {
             PictureFormat::Xrgb8888 => pixel | 0xFF00_0000,
@@ -627,6 +630,7 @@ impl PictureFormat {
 
     /// The stored pixel of an ARGB word.
     #[must_use]
+    #[inline]
     pub const fn encode(self, argb: u32) -> u32 {
         match self {
             PictureFormat::Xrgb8888 => argb | 0xFF00_0000,
@@ -643,6 +647,7 @@ impl PictureFormat {
 }
 
 /// A word with its bytes 0 and 2 in each other's place.
+#[inline]
 const fn red_for_blue(word: u32) -> u32 {
     (word & 0xFF00_FF00) | (word >> 16 & 0xFF) | (word & 0xFF) << 16
 }

@@ -1,4 +1,6 @@
-//! What a register declaration is made of; the declarations themselves are in [`crate::registers`].
+//! What a register declaration is made of, and how registers are found; the declarations themselves are in [`crate::registers`].
+
+use crate::registers::{REGISTERS, Reg};
 
 /// Who may do what with a register over the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,3 +85,73 @@ impl Register {
         self.offset + 4 * index
     }
 }
+
+// Declares registers: their names as `Reg`, their declarations as `REGISTERS`.
+macro_rules! registers {
+    ($(
+        $(#[doc = $doc:literal])+
+        $id:ident $name:literal @ $offset:literal [$count:literal] $access:ident
+        reset $reset:expr, writable $writable:expr, w1c $w1c:expr,
+        { $($hi:literal : $lo:literal $field:literal $fdoc:literal;)* }
+    )+) => {
+        /// Names of all registers; [`Reg::info`] gives the declaration.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[repr(u16)]
+        pub enum Reg { $( $(#[doc = $doc])+ $id, )+ }
+
+        /// Every register, in rising order of offset.
+        pub static REGISTERS: &[Register] = &[ $( Register {
+            name: $name, offset: $offset, count: $count, access: Access::$access,
+            reset: $reset, writable: $writable, write_one_to_clear: $w1c,
+            fields: &[ $( Field { hi: $hi, lo: $lo, name: $field, doc: $fdoc }, )* ],
+            doc: concat!($($doc),+),
+        }, )+ ];
+
+        impl Reg {
+            /// Every name, in rising order of offset.
+            pub const ALL: &'static [Reg] = &[ $( Reg::$id, )+ ];
+
+            /// Byte offset of the register's first word.
+            #[must_use]
+            pub const fn offset(self) -> u32 {
+                match self { $( Reg::$id => $offset, )+ }
+            }
+        }
+    };
+}
+
+pub(crate) use registers;
+
+impl Reg {
+    /// The declaration of this register.
+    #[must_use]
+    pub fn info(self) -> &'static Register {
+        &REGISTERS[self as usize]
+    }
+
+    /// The register that owns the word at byte `offset` of the aperture, and which of its words it is.
+    #[must_use]
+    pub fn at(offset: u32) -> Option<(Reg, u32)> {
+        let owner = usize::from(*OWNERS.get(offset as usize / 4)?);
+        let reg = *Reg::ALL.get(owner)?;
+        offset.is_multiple_of(4).then(|| (reg, (offset - reg.offset()) / 4))
+    }
+}
+
+/// For each word of the aperture the number of the register that owns it; [`u16::MAX`] is nobody.
+///
+/// A table, since the card and its firmware look up every word of a register write.
+static OWNERS: [u16; crate::bus::REGISTERS_BYTES as usize / 4] = {
+    let mut owners = [u16::MAX; crate::bus::REGISTERS_BYTES as usize / 4];
+    let mut number = 0;
+    while number < REGISTERS.len() {
+        let (first, count) = (REGISTERS[number].offset as usize / 4, REGISTERS[number].count as usize);
+        let mut word = first;
+        while word < first + count {
+            owners[word] = number as u16;
+            word += 1;
+        }
+        number += 1;
+    }
+    owners
+};

@@ -1,78 +1,11 @@
 //! The register map. Every register stands here once; [`Reg`] names it, [`Reg::info`] tells all of it.
 
-use crate::register::{Access, Field, Register};
+use crate::register::{Access, Field, Register, registers};
 
 /// Bits of f32 1.0.
 const ONE: u32 = 0x3F80_0000;
 /// A 4x4 identity matrix, row-major, as f32 bits.
 const IDENTITY: &[u32] = &[ONE, 0, 0, 0, 0, ONE, 0, 0, 0, 0, ONE, 0, 0, 0, 0, ONE];
-
-macro_rules! registers {
-    ($(
-        $(#[doc = $doc:literal])+
-        $id:ident $name:literal @ $offset:literal [$count:literal] $access:ident
-        reset $reset:expr, writable $writable:expr, w1c $w1c:expr,
-        { $($hi:literal : $lo:literal $field:literal $fdoc:literal;)* }
-    )+) => {
-        /// Names of all registers; [`Reg::info`] gives the declaration.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        #[repr(u16)]
-        pub enum Reg { $( $(#[doc = $doc])+ $id, )+ }
-
-        /// Every register, in rising order of offset.
-        pub static REGISTERS: &[Register] = &[ $( Register {
-            name: $name, offset: $offset, count: $count, access: Access::$access,
-            reset: $reset, writable: $writable, write_one_to_clear: $w1c,
-            fields: &[ $( Field { hi: $hi, lo: $lo, name: $field, doc: $fdoc }, )* ],
-            doc: concat!($($doc),+),
-        }, )+ ];
-
-        impl Reg {
-            /// Every name, in rising order of offset.
-            pub const ALL: &'static [Reg] = &[ $( Reg::$id, )+ ];
-
-            /// Byte offset of the register's first word.
-            #[must_use]
-            pub const fn offset(self) -> u32 {
-                match self { $( Reg::$id => $offset, )+ }
-            }
-        }
-    };
-}
-
-impl Reg {
-    /// The declaration of this register.
-    #[must_use]
-    pub fn info(self) -> &'static Register {
-        &REGISTERS[self as usize]
-    }
-
-    /// The register that owns the word at byte `offset` of the aperture, and which of its words it is.
-    #[must_use]
-    pub fn at(offset: u32) -> Option<(Reg, u32)> {
-        let owner = usize::from(*OWNERS.get(offset as usize / 4)?);
-        let reg = *Reg::ALL.get(owner)?;
-        offset.is_multiple_of(4).then(|| (reg, (offset - reg.offset()) / 4))
-    }
-}
-
-/// For each word of the aperture the number of the register that owns it; [`u16::MAX`] is nobody.
-///
-/// A table, since the card and its firmware look up every word of a register write.
-static OWNERS: [u16; crate::bus::REGISTERS_BYTES as usize / 4] = {
-    let mut owners = [u16::MAX; crate::bus::REGISTERS_BYTES as usize / 4];
-    let mut number = 0;
-    while number < REGISTERS.len() {
-        let (first, count) = (REGISTERS[number].offset as usize / 4, REGISTERS[number].count as usize);
-        let mut word = first;
-        while word < first + count {
-            owners[word] = number as u16;
-            word += 1;
-        }
-        number += 1;
-    }
-    owners
-};
 
 registers! {
     // Identification -------------------------------------------------------------------------

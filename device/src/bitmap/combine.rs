@@ -9,6 +9,7 @@
 //! mask is kept and not turned. Where nothing is kept, a value is a plain fill and a copy a plain move.
 
 use super::copy::{Order, move_pixels, stage};
+use super::fill::fill_row;
 use super::{Bitmap, Span, charge, specification};
 use crate::probe::account::Account;
 use std::ops::{BitAnd, BitOr, BitXor, Not};
@@ -22,11 +23,18 @@ pub(super) trait Pixel:
 {
     /// The low bits of a word.
     fn of(word: u32) -> Self;
+
+    /// A word full of such pixels.
+    fn repeated(self) -> u32;
 }
 
 impl Pixel for u32 {
     fn of(word: u32) -> u32 {
         word
+    }
+
+    fn repeated(self) -> u32 {
+        self
     }
 }
 
@@ -34,11 +42,19 @@ impl Pixel for u16 {
     fn of(word: u32) -> u16 {
         word as u16
     }
+
+    fn repeated(self) -> u32 {
+        u32::from(self) * 0x0001_0001
+    }
 }
 
 impl Pixel for u8 {
     fn of(word: u32) -> u8 {
         word as u8
+    }
+
+    fn repeated(self) -> u32 {
+        u32::from(self) * 0x0101_0101
     }
 }
 
@@ -115,7 +131,7 @@ impl Bitmap {
                 for row in 0..to.rows {
                     let pixels = &mut memory[to.at::<P>(row)..][..length];
                     if keep == P::of(0) {
-                        pixels.fill(flip);
+                        fill_row(pixels, flip);
                     } else {
                         pixels.iter_mut().for_each(|pixel| *pixel = (*pixel & keep) ^ flip);
                     }

@@ -6,6 +6,7 @@
 
 use super::canvas::{Grid, Painted, parts};
 use super::combine::{Masks, Pixel};
+use super::fill::fill_row;
 use super::{Bitmap, charge, list_specification};
 use crate::probe::account::Account;
 use zga_abi::Counter;
@@ -58,7 +59,7 @@ fn fill<P: Pixel>(memory: &mut [P], list: &FillList<'_>, clips: &[ClipBox]) -> P
         }
     };
     if keep == P::of(0) {
-        paint(list, clips, |part| rows(part, |row, _, flip| row.fill(flip)))
+        paint(list, clips, |part| rows(part, |row, _, flip| fill_row(row, flip)))
     } else {
         let combine = |row: &mut [P], keep, flip| row.iter_mut().for_each(|pixel| *pixel = (*pixel & keep) ^ flip);
         paint(list, clips, |part| rows(part, combine))

@@ -90,9 +90,11 @@ impl Processor {
             PaintWords { words, first }
         };
         let (from, through) = (paint(9), paint(9 + compose::PAINT_WORDS));
+        let kind = from.word(0);
+        kind.require((compose::COLOUR..=compose::TRANSFORMED).contains(&kind.value))?;
         let source = match from.check(memory, &onto)? {
             Kind::Paint(paint) => paint,
-            Kind::None | Kind::Inline(_) => return from.word(0).mean(None),
+            Kind::None | Kind::Inline(_) => return Err(kind.refuse(FaultCode::BadValue)),
         };
         let mask = match through.check(memory, &onto)? {
             Kind::Paint(paint) => Mask::Paint(paint),

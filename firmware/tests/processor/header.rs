@@ -6,7 +6,7 @@ use zga_abi::{Fault, FaultCode};
 use zga_firmware::Processor;
 
 /// Opcode, payload words, whether more are possible.
-const LENGTHS: [(u32, u32, bool); 22] = [
+const LENGTHS: [(u32, u32, bool); 23] = [
     (0x00, 0, true),
     (0x01, 2, true),
     (0x02, 0, false),
@@ -26,6 +26,7 @@ const LENGTHS: [(u32, u32, bool); 22] = [
     (0x29, 13, true),
     (0x2A, 10, true),
     (0x2B, 11, true),
+    (0x2C, 36, true),
     (0x30, 1, false),
     (0x31, 1, false),
     (0x32, 1, false),

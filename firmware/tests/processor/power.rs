@@ -260,7 +260,10 @@ fn probe_is_powered_by_clears_and_draws_while_enabled() {
 
 #[test]
 fn bitmap_packets_power_the_bitmap_unit() {
-    let packets: [(u32, &[u32]); 12] = [
+    // A colour without a mask.
+    let mut compose = [0; 40];
+    compose[..9].copy_from_slice(&[0, 64, 1, 0x0001_0001, 3, 0, 0, 1, 1]);
+    let packets: [(u32, &[u32]); 13] = [
         (0x20, &[0, 64, 0, 0, 0, 1, 1, 0]),
         (0x21, &[0, 0, 64, 0, 0, 64, 64, 0, 0, 1, 1]),
         (0x22, &[0, 4, 1, 1, 0]),
@@ -273,6 +276,7 @@ fn bitmap_packets_power_the_bitmap_unit() {
         (0x29, &[0, 64, 0, 0x0001_0001, 3, 1, 0, 1, 0, 64, 0x0001_0001, 0, 0, 0, 0, 0, 0]),
         (0x2A, &[0, 64, 0, 0x0001_0001, 3, 1, 0, 1, 5, 0, 0, 0, 0, 0]),
         (0x2B, &[0, 64, 0, 0x0001_0001, 3, 1, 0, 1, 5, 0, 0, 0, 0, 0, 0]),
+        (0x2C, &compose),
     ];
     for (opcode, payload) in packets {
         let mut bench = Bench::new();

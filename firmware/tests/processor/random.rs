@@ -9,6 +9,50 @@ use proptest::strategy::ValueTree;
 use zga_abi::FaultCode;
 use zga_firmware::{Processor, ProcessorState};
 
+/// COMPOSE of an rgb565 source, repeated, through a transformed alpha8 mask; a clip box, a rectangle.
+const COMPOSE: [u32; 40] = [
+    0x1000,
+    256,
+    1,
+    0x0008_0010,
+    3,
+    1,
+    0,
+    1,
+    2,
+    2,
+    1,
+    0x8000,
+    64,
+    0x0008_0010,
+    1,
+    2,
+    0,
+    0,
+    0,
+    0,
+    0,
+    0,
+    3,
+    3,
+    0,
+    0xA001,
+    17,
+    0x0008_0010,
+    3,
+    4,
+    0x1_0000,
+    5,
+    6,
+    7,
+    0x1_0000,
+    9,
+    0,
+    0x0008_0010,
+    1,
+    0x0002_0003,
+];
+
 /// Something the host does.
 #[derive(Clone, Debug)]
 enum Step {
@@ -79,6 +123,7 @@ fn shaped() -> impl Strategy<Value = Vec<u32>> {
         (0x29, 13..20),
         (0x2A, 10..17),
         (0x2B, 11..20),
+        (0x2C, 36..46),
         (0x30, 1..2),
         (0x31, 1..2),
         (0x32, 1..2),
@@ -105,6 +150,7 @@ fn nearly() -> impl Strategy<Value = Vec<u32>> {
         packet(0x29, &[0x1000, 64, 3, 0x0008_0010, 3, 7, 0, 1, 0x1000, 64, 0x0008_0010, 1, 1, 0, 99, 1, 0x0002_0003]),
         packet(0x2A, &[0x1000, 256, 2, 0x0008_0010, 3, 7, 0, 1, 5, 3, 0, 0x0008_0010, 1, 0x0002_0003]),
         packet(0x2B, &[0x1000, 256, 1, 0x0008_0010, 3, 7, 0, 1, 5, 6, 1, 0, 99, 1, 0x0002_0003, 5, 6]),
+        packet(0x2C, &COMPOSE),
         packet(0x31, &[0x4000]),
         packet(0x32, &[0x8000]),
     ];

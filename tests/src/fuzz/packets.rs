@@ -91,7 +91,7 @@ impl<'a, 'b> Composer<'a, 'b> {
 
     /// One thing that can be done in a scene.
     fn step(&mut self, picture: &Picture) {
-        match self.bytes.byte() % 40 {
+        match self.bytes.byte() % 41 {
             0..=7 => self.draw_inline(picture),
             8 => self.draw_heavy(picture),
             9..=12 => self.draw_buffer(picture),
@@ -124,6 +124,7 @@ impl<'a, 'b> Composer<'a, 'b> {
             37 => self.copy_list(),
             38 => self.segments(),
             39 => self.expand(),
+            40 => self.compose(),
             _ => self.register(),
         }
     }

@@ -1,5 +1,8 @@
 //! Compose: a source through a mask put together with what is there, in entries cut to clip boxes.
 //!
+//! Source: T. Porter, T. Duff, "Compositing Digital Images", SIGGRAPH 1984, in the form of the X Rendering Extension, and with
+//! the 8-bit arithmetic that its renderers share.
+//!
 //! Duties and clocks: see [`super`]; for each part 1 clock for each line written, 1 for each line of what is there where the
 //! operator needs it, and 1 for each line of source and mask, or 1 for each pixel of one that is transformed or repeated: its
 //! pixels are fetched one by one. Pixels in entries come from the front end, which has charged them.
@@ -25,7 +28,7 @@ use crate::probe::account::Account;
 use fearless_simd::{Level, dispatch};
 use mix::Mix;
 use zga_abi::Counter;
-use zga_abi::format::Repeat;
+use zga_abi::format::{ComposeOperator, Repeat};
 use zga_firmware::checked::{ClipBox, Compose, ComposeEntry, Mask, Paint, Picture};
 
 /// Pixels of a run: a multiple of the 16 that are mixed at a time.
@@ -117,6 +120,8 @@ impl Painter {
         let Picture { image, format } = compose.onto;
         let grid = Grid::of(&image);
         let reads = compose.operator.reads_destination();
+        // Nothing has to be mixed: the source's words are the result.
+        let plain = compose.operator == ComposeOperator::Source && compose.mask == Mask::None;
         for y in part.y1..part.y2 {
             let mut x = part.x1;
             while x < part.x2 {
@@ -134,6 +139,11 @@ impl Painter {
                     }
                 }
                 let at = grid.at(x, y);
+                if plain {
+                    fetch::store(memory, format, at, &runs.source[..count]);
+                    x += count as i32;
+                    continue;
+                }
                 if reads {
                     fetch::row(memory, format, at, &mut runs.there[..count]);
                 }

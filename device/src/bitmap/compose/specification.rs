@@ -40,7 +40,7 @@ fn pixel(format: PictureFormat, [b, g, r, a]: Channels) -> u32 {
         PictureFormat::Xrgb8888 => 255 << 24 | r << 16 | g << 8 | b,
         PictureFormat::Abgr8888 => a << 24 | b << 16 | g << 8 | r,
         PictureFormat::Xbgr8888 => 255 << 24 | b << 16 | g << 8 | r,
-        PictureFormat::Rgb565 => (r / 8) << 11 | (g / 4) << 5 | b / 8,
+        PictureFormat::Rgb565 => (r / 8) << 11 | (g / 4) << 5 | (b / 8),
         PictureFormat::Alpha8 => a,
     }
 }

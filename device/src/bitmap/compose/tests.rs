@@ -87,8 +87,8 @@ fn compose_every_kernel_is_the_specification() {
         let components = mask != Mask::None && random.below(2) == 0;
         let mut entries = Vec::new();
         for _ in 0..random.below(3) + 1 {
-            let [x, y] = [(); 2].map(|()| random.below(50) as i16 - 10);
-            let [width, height] = [random.below(60), random.below(8)];
+            let [x, y] = [random.below(50) as i16 - 10, random.below(18) as i16 - 6];
+            let [width, height] = [random.below(60), random.below(10)];
             entries.extend([list::pair(x as u16, y as u16), list::pair(width as u16, height as u16)]);
             if let Mask::Inline(format) = mask {
                 entries.extend((0..words::row_words(width, format.bytes()) * height).map(|_| random.argb()));
@@ -103,7 +103,8 @@ fn compose_every_kernel_is_the_specification() {
             assert_eq!(outcome(kernel, &memory, &compose), expected, "{kernel:?} {compose:?}");
         }
     }
-    assert!(changed > 10_000, "{changed} compositions changed a pixel");
+    // The others lie outside, are empty or leave things as they are.
+    assert!(changed > 6_000, "{changed} compositions changed a pixel");
 }
 
 /// One pixel, source over destination through a mask, of a colour.
