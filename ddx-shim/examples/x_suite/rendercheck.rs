@@ -18,7 +18,7 @@ pub struct Rendercheck {
 }
 
 /// Name, arguments, in the quick run.
-const SELECTIONS: [(&str, &[&str], bool); 7] = [
+const SELECTIONS: [(&str, &[&str], bool); 8] = [
     (
         "fills, coordinates, clients",
         &["-t", "fill,dcoords,scoords,mcoords,tscoords,tmcoords,bug7366,gtk_argb_xbgr,libreoffice_xrgb"],
@@ -26,7 +26,12 @@ const SELECTIONS: [(&str, &[&str], bool); 7] = [
     ),
     ("repeat", &["-t", "repeat", "-o", "Src,Over,Add"], true),
     ("blend", &["-t", "blend", "-o", "Src,Over,Add"], true),
-    ("formats", &["-t", "composite,cacomposite,blend", "-f", "a8r8g8b8,x8r8g8b8,a8"], true),
+    (
+        "formats, four operators",
+        &["-t", "composite,cacomposite", "-f", "a8r8g8b8,r5g6b5,a8", "-o", "Over,InReverse,Atop,Add"],
+        true,
+    ),
+    ("formats", &["-t", "composite,cacomposite,blend", "-f", "a8r8g8b8,x8r8g8b8,a8"], false),
     ("gradients", &["-t", "gradients", "-o", "Src,Over", "-f", "a8r8g8b8"], true),
     ("all operators, a8r8g8b8 x8r8g8b8 r5g6b5 a8", &["-t", "composite", "-f", "a8r8g8b8,x8r8g8b8,r5g6b5,a8"], false),
     ("component alpha, all operators", &["-t", "cacomposite", "-f", "a8r8g8b8,x8r8g8b8,r5g6b5,a8"], false),
