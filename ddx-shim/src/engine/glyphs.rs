@@ -117,7 +117,17 @@ fn gather(pixmaps: &Pixmaps, format: PictureFormat, area: Area, glyphs: &[Glyph]
     Some(stride)
 }
 
+/// Work of so many letters with so many pixels together.
+const fn text_work(letters: u64, pixels: u64) -> u64 {
+    ENTRY * letters + pixels
+}
+
 impl Engine {
+    /// So little text, and nothing to do for the card, that it is the renderer's: to be asked before its glyphs are looked at.
+    pub fn is_small_text(&mut self, letters: u64, pixels: u64) -> bool {
+        self.is_small(text_work(letters, pixels))
+    }
+
     /// Composes through glyphs. `mask`: the format in which they are added up first; none: each is composed by itself. The
     /// request's own mask is not looked at.
     pub fn compose_glyphs(&mut self, request: &Request<'_>, glyphs: &[Glyph], mask: Option<PictureFormat>) -> bool {
@@ -139,7 +149,7 @@ impl Engine {
         if !glyphs.iter().all(placed) {
             return false;
         }
-        let work = glyphs.iter().map(|glyph| ENTRY + glyph.pixels()).sum();
+        let work = text_work(glyphs.len() as u64, glyphs.iter().map(Glyph::pixels).sum());
         self.composed(&request, area, Some(work), &|driver, pixmaps, composition| {
             // One call takes glyphs of one format.
             glyphs.chunk_by(|one, other| one.format == other.format).try_for_each(|glyphs| {

@@ -167,6 +167,25 @@ pub unsafe fn mask_format(mask: PictFormatPtr) -> Option<Option<PictureFormat>> 
     }
 }
 
+/// Letters of a request, and their pixels: what there is to do, told without a look at their pictures.
+///
+/// # Safety
+/// The lists and letters are the server's.
+pub unsafe fn text_size(count: c_int, lists: GlyphListPtr, letters: *mut GlyphPtr) -> (u64, u64) {
+    let (mut total, mut pixels) = (0, 0);
+    // SAFETY: the caller vouches for it; there are as many letters as the lists say together.
+    unsafe {
+        for place in 0..usize::try_from(count).unwrap_or(0) {
+            for _ in 0..(*lists.add(place)).len {
+                let info = &(**letters.add(total)).info;
+                total += 1;
+                pixels += u64::from(info.width) * u64::from(info.height);
+            }
+        }
+    }
+    (total as u64, pixels)
+}
+
 /// The glyphs of a request, counted from the drawable's upper left, which is at `corner` of its pixmap. `None`: not the card's.
 ///
 /// # Safety

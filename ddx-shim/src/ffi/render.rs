@@ -254,6 +254,10 @@ unsafe fn glyphs_by_card(
     unsafe {
         let pscreen = (*(*onto).pDrawable).pScreen;
         let exa = functions(pscreen)?;
+        let (total, pixels) = pictures::text_size(count, lists, letters);
+        if with_engine("Glyphs", pscreen, true, |engine, _| engine.is_small_text(total, pixels)) {
+            return None;
+        }
         let mask = pictures::mask_format(format)?;
         if count <= 0 {
             return None;
