@@ -94,7 +94,7 @@ impl Engine {
     }
 
     /// Lines of one pixel's width from point to point; `cap`: with the very last pixel, if it is not the first of a figure that
-    /// [`closes`], `corner` being the drawable's upper left in the clip's coordinates.
+    /// closes (`closing.rs`), `corner` being the drawable's upper left in the clip's coordinates.
     pub fn polyline(&mut self, onto: &Onto<'_>, value: u32, points: Points<'_>, corner: [i32; 2], cap: bool) -> bool {
         let mut places = std::mem::take(&mut self.scratch.points);
         let line = if points.steps {
