@@ -5,6 +5,7 @@
 
 use zga_abi::bus::Bus;
 use zga_abi::format::{ComposeOperator, PictureFormat, Repeat};
+use zga_abi::packet::compose::Transform;
 use zga_abi::packet::{Opcode, compose, list};
 
 use crate::bitmap::Surface;
@@ -23,23 +24,6 @@ pub struct Picture<'a> {
     pub part: Option<Rectangle>,
     /// What they mean: a format with the drawable's bytes a pixel.
     pub format: PictureFormat,
-}
-
-/// From a pixel to that of a picture, 16.16: x' = xx x + xy y + x0, y' = yx x + yy y + y0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Transform {
-    /// Columns for a column.
-    pub xx: i32,
-    /// Columns for a row.
-    pub xy: i32,
-    /// Columns.
-    pub x0: i32,
-    /// Rows for a column.
-    pub yx: i32,
-    /// Rows for a row.
-    pub yy: i32,
-    /// Rows.
-    pub y0: i32,
 }
 
 /// A colour for each pixel.

@@ -77,7 +77,7 @@ mod warning;
 pub use antialias::Antialias;
 pub use bitmap::{Drawable, Image, ImageError, Placement, Raster};
 pub use capture::{Frame, frame_hash, hash_text};
-pub use compose::{Composition, Mask, MaskGlyph, Paint, Picture, Transform};
+pub use compose::{Composition, Mask, MaskGlyph, Paint, Picture};
 pub use draw::{Curve, MeshBuffer, Vertex, Vertices};
 pub use driver::{Driver, DriverOptions};
 pub use effects::{
@@ -96,3 +96,4 @@ pub use submit::{CardFault, FaultSource, Fence, Submit};
 pub use target::{Target, TargetOptions};
 pub use view::{Camera, Corners, Decal, DecalInfo, FitInfo, Matrix, ViewError};
 pub use warning::Warning;
+pub use zga_abi::packet::compose::Transform;

@@ -14,7 +14,7 @@ mod surfaces;
 
 pub use bitmap::{Combine, CombineSource, Convert, Copy, Fill, Image, Rows, Stretch};
 pub(crate) use compose::are_entries;
-pub use compose::{Compose, ComposeEntry, Mask, Paint, Picture, Sampled, Transform};
+pub use compose::{Compose, ComposeEntry, Mask, Paint, Picture, Sampled};
 pub use draw::{Clear, Draw, DrawState, Words};
 pub use effects::{Fog, Lighting, Texture};
 pub(crate) use lists::are_bitmaps;

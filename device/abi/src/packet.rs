@@ -238,6 +238,24 @@ pub mod compose {
     /// Kind: pixels in the entries, alpha8 or argb8888, each row padded to whole words, whose first is the entry's; a mask alone.
     pub const INLINE: u32 = 4;
 
+    /// From a place in the destination, moved, to that of a pixel, 16.16, any values: x' = xx x + xy y + x0,
+    /// y' = yx x + yy y + y0. In a packet its numbers stand in this order.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Transform {
+        /// Columns for a column.
+        pub xx: i32,
+        /// Columns for a row.
+        pub xy: i32,
+        /// Columns at the origin.
+        pub x0: i32,
+        /// Rows for a column.
+        pub yx: i32,
+        /// Rows for a row.
+        pub yy: i32,
+        /// Rows at the origin.
+        pub y0: i32,
+    }
+
     /// Words of a row of `width` pixels of `bytes` bytes in an entry.
     #[must_use]
     pub const fn row_words(width: u32, bytes: u32) -> u32 {

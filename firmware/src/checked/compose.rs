@@ -5,7 +5,7 @@
 use super::lists::{clip_boxes, place_of, take_rows};
 use super::{ClipBox, Image, ListRectangle};
 use zga_abi::format::{ComposeOperator, PictureFormat, Repeat};
-use zga_abi::packet::compose;
+use zga_abi::packet::compose::{self, Transform};
 
 /// Pixels with a meaning for a composition.
 ///
@@ -17,23 +17,6 @@ pub struct Picture {
     pub image: Image,
     /// What they mean.
     pub format: PictureFormat,
-}
-
-/// From a pixel to that of a picture: 16.16, any values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Transform {
-    /// Columns of the picture for a column.
-    pub xx: i32,
-    /// Columns of the picture for a row.
-    pub xy: i32,
-    /// Columns of the picture at 0, 0.
-    pub x0: i32,
-    /// Rows of the picture for a column.
-    pub yx: i32,
-    /// Rows of the picture for a row.
-    pub yy: i32,
-    /// Rows of the picture at 0, 0.
-    pub y0: i32,
 }
 
 /// A picture as it is read.

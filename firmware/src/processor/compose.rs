@@ -7,10 +7,11 @@ use super::claim::Claim;
 use super::lists::{FARTHEST, SurfaceClaim, fixed, split_clips};
 use super::memory::VideoMemory;
 use super::{Processor, bad_length};
-use crate::checked::{Compose, Mask, Paint, Picture, Sampled, Transform, are_entries};
+use crate::checked::{Compose, Mask, Paint, Picture, Sampled, are_entries};
 use crate::hardware::Hardware;
 use zga_abi::format::{ComposeOperator, PictureFormat, Repeat};
-use zga_abi::packet::{compose, list};
+use zga_abi::packet::compose::{self, Transform};
+use zga_abi::packet::list;
 use zga_abi::{Fault, FaultCode, Units};
 
 /// Words of a paint, and its first word's place in the packet.

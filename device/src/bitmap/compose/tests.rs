@@ -3,8 +3,9 @@
 use super::*;
 use crate::Kernel;
 use zga_abi::format::{ComposeOperator, PictureFormat};
+use zga_abi::packet::compose::Transform;
 use zga_abi::packet::{compose as words, list};
-use zga_firmware::checked::{Image, Sampled, Transform};
+use zga_firmware::checked::{Image, Sampled};
 
 struct Random(u64);
 
