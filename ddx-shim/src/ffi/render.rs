@@ -128,8 +128,8 @@ pub unsafe fn unwrap(pscreen: ScreenPtr) {
 /// Draws a request by the server's renderer if everything that it reads and writes can be opened, else by EXA.
 ///
 /// # Safety
-/// The server calls with pictures of one of this driver's screens. `more` opens what there is besides source and destination;
-/// `draw` gets the functions to draw by and calls one of them.
+/// The server calls with pictures of one of this driver's screens, and what is read has been through [`validate`]. `more` opens
+/// what there is besides source and destination; `draw` gets the functions to draw by and calls one of them.
 unsafe fn draw(
     from: PicturePtr,
     onto: PicturePtr,
@@ -141,7 +141,6 @@ unsafe fn draw(
         let drawable = (*onto).pDrawable;
         let pscreen = (*drawable).pScreen;
         let Some(below) = screen::of_screen(pscreen).map(|screen| screen.render) else { return };
-        validate(from);
         let mut open = Open::new(pscreen);
         if (*onto).alphaMap.is_null() && open_picture(&mut open, from) && more(&mut open, pscreen) && open.add(drawable)
         {
@@ -154,7 +153,7 @@ unsafe fn draw(
 }
 
 /// Has the server make a window fit to be read, which may mean to take its own cursor off; that comes back to this driver, so
-/// it is done before anything is open. The renderer asks for the same again, and finds it done.
+/// it is done before anything is encoded or open. The renderer asks for the same again, and finds it done.
 ///
 /// # Safety
 /// As for [`draw`].
@@ -307,6 +306,18 @@ unsafe extern "C" fn glyphs(
     }
 }
 
+/// Draws shapes, which read nothing but their source.
+///
+/// # Safety
+/// As for [`draw`].
+unsafe fn draw_shapes(from: PicturePtr, onto: PicturePtr, call: impl FnOnce(Functions)) {
+    // SAFETY: the caller vouches for it.
+    unsafe {
+        validate(from);
+        draw(from, onto, |_, _| true, call);
+    }
+}
+
 unsafe extern "C" fn trapezoids(
     operator: CARD8,
     from: PicturePtr,
@@ -319,16 +330,11 @@ unsafe extern "C" fn trapezoids(
 ) {
     // SAFETY: the server calls with pictures of one of this driver's screens, and shapes that live meanwhile.
     unsafe {
-        draw(
-            from,
-            onto,
-            |_, _| true,
-            |functions| {
-                if let Some(trapezoids) = functions.trapezoids {
-                    trapezoids(operator, from, onto, format, x, y, count, shapes);
-                }
-            },
-        );
+        draw_shapes(from, onto, |functions| {
+            if let Some(trapezoids) = functions.trapezoids {
+                trapezoids(operator, from, onto, format, x, y, count, shapes);
+            }
+        });
     }
 }
 
@@ -344,15 +350,10 @@ unsafe extern "C" fn triangles(
 ) {
     // SAFETY: as above.
     unsafe {
-        draw(
-            from,
-            onto,
-            |_, _| true,
-            |functions| {
-                if let Some(triangles) = functions.triangles {
-                    triangles(operator, from, onto, format, x, y, count, shapes);
-                }
-            },
-        );
+        draw_shapes(from, onto, |functions| {
+            if let Some(triangles) = functions.triangles {
+                triangles(operator, from, onto, format, x, y, count, shapes);
+            }
+        });
     }
 }
