@@ -82,14 +82,10 @@ impl Scene {
         }
         for (at, before) in self.requests[..number].iter().enumerate() {
             let told = match before {
-                Request::Change { gc, .. }
-                | Request::Clip { gc, .. }
-                | Request::ClipMask { gc, .. }
-                | Request::Dashes { gc, .. } => context == Some(*gc),
                 Request::Picture { pic, .. } | Request::PictureClip { pic, .. } | Request::Transformed { pic, .. } => {
                     pictures.contains(pic)
                 }
-                _ => false,
+                _ => before.changes_context().is_some_and(|gc| context == Some(gc)),
             };
             if told {
                 text.push_str(&format!("    {at}: {before:?}\n"));

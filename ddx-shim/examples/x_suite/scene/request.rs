@@ -50,44 +50,43 @@ impl Pen {
 }
 
 impl Request {
+    /// The surface that it draws on through a graphics context, and that context.
+    const fn drawing(&self) -> Option<(usize, usize)> {
+        match self {
+            Request::Fill { on, gc, .. }
+            | Request::Frames { on, gc, .. }
+            | Request::Arcs { on, gc, .. }
+            | Request::Polygon { on, gc, .. }
+            | Request::Segments { on, gc, .. }
+            | Request::Lines { on, gc, .. }
+            | Request::Points { on, gc, .. }
+            | Request::Copy { on, gc, .. }
+            | Request::Plane { on, gc, .. }
+            | Request::Put { on, gc, .. }
+            | Request::Text { on, gc, .. } => Some((*on, *gc)),
+            _ => None,
+        }
+    }
+
     /// The graphics context that it uses or changes.
     pub(super) fn context(&self) -> Option<usize> {
+        self.changes_context().or_else(|| self.drawing().map(|(_, gc)| gc))
+    }
+
+    /// The graphics context that it changes.
+    pub(super) const fn changes_context(&self) -> Option<usize> {
         match self {
             Request::Change { gc, .. }
             | Request::Dashes { gc, .. }
             | Request::Clip { gc, .. }
-            | Request::ClipMask { gc, .. }
-            | Request::Fill { gc, .. }
-            | Request::Frames { gc, .. }
-            | Request::Arcs { gc, .. }
-            | Request::Polygon { gc, .. }
-            | Request::Segments { gc, .. }
-            | Request::Lines { gc, .. }
-            | Request::Points { gc, .. }
-            | Request::Copy { gc, .. }
-            | Request::Plane { gc, .. }
-            | Request::Put { gc, .. }
-            | Request::Text { gc, .. } => Some(*gc),
+            | Request::ClipMask { gc, .. } => Some(*gc),
             _ => None,
         }
     }
 
     /// The surface that it draws on through a context.
     pub(super) fn drawn_on(&self) -> Option<usize> {
-        match self {
-            Request::Fill { on, .. }
-            | Request::Frames { on, .. }
-            | Request::Arcs { on, .. }
-            | Request::Polygon { on, .. }
-            | Request::Segments { on, .. }
-            | Request::Lines { on, .. }
-            | Request::Points { on, .. }
-            | Request::Copy { on, .. }
-            | Request::Plane { on, .. }
-            | Request::Put { on, .. }
-            | Request::Text { on, .. } => Some(*on),
-            _ => None,
-        }
+        self.drawing().map(|(on, _)| on)
     }
 
     /// The picture that it draws from, its mask, and what it draws to.
