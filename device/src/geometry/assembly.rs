@@ -93,6 +93,10 @@ pub struct Widths {
 impl Assembler<'_> {
     /// Assembles primitives `range` of the draw until all are done or `sink` is full; counts what
     /// happened and returns the first primitive not assembled.
+    ///
+    /// Its loop is the hottest of small triangles: it is a function of its own for each sink, so that what its caller
+    /// holds has no say in which registers it gets.
+    #[inline(never)]
     pub fn run(&self, range: Range<u32>, sink: &mut impl Sink, counts: &mut GeometryCounts) -> u32 {
         let begun = range.start;
         for number in range.clone() {
