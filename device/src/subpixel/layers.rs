@@ -118,10 +118,9 @@ impl Resolver {
         let mut depths = std::mem::take(&mut self.sampled);
         order.retain(|&(_, number)| layers[number].mask & tangled != 0);
         depths.clear();
-        let [x, y] = pixel.place;
         depths.extend(layers.iter().map(|layer| match pixel.draw(layer.fragment).test {
             None => LayerDepths::Last,
-            Some(_) => match pixel.piece(layer.fragment).sampled(pixel.setting, x, y) {
+            Some(_) => match pixel.sampled(layer.fragment) {
                 Some(sampled) => LayerDepths::Sampled(sampled),
                 None => LayerDepths::Steep,
             },

@@ -4,7 +4,7 @@
 
 use super::layers::{Class, Layer, LayerDepths, Run};
 use super::lists::Fragment;
-use super::piece::Piece;
+use super::piece::{Piece, Sampled};
 use super::pixel::{Pixel, samples};
 use super::scene::{ItemDraw, Kind, Rule};
 use super::search::{self, DepthRange, Extreme};
@@ -188,10 +188,19 @@ impl Resolver {
             counts.evaluations += planes * u64::from(shared.count_ones());
         }
         let bit = |sample: u32| pixel.setting.grid.sample_bit(sample);
-        samples(pixel.setting, shared)
-            .filter(|&sample| test.passes(pixel.depth(new, sample), pixel.depth_of(depths, sample)))
-            .map(bit)
-            .sum()
+        let samples = samples(pixel.setting, shared);
+        let sampled = match depths {
+            Depths::Constant(depth) => Some(Sampled::level(depth)),
+            Depths::Fragment(fragment) => pixel.sampled(fragment),
+        };
+        if let (Some(new), Some(stored)) = (pixel.sampled(new), sampled) {
+            let passes = |sample: &u32| {
+                let offset = search::offset_of(pixel.setting.grid, *sample);
+                test.passes(new.depth(offset), stored.depth(offset))
+            };
+            return samples.filter(passes).map(bit).sum();
+        }
+        samples.filter(|&sample| test.passes(pixel.depth(new, sample), pixel.depth_of(depths, sample))).map(bit).sum()
     }
 
     /// An opaque fragment.

@@ -59,6 +59,12 @@ pub struct Sampled {
 }
 
 impl Sampled {
+    /// One depth at all samples.
+    #[must_use]
+    pub const fn level(depth: i32) -> Sampled {
+        Sampled { value: depth as i64, gradient: [0; 2], below: 0, limits: [depth; 2] }
+    }
+
     /// Depth at a sample.
     #[must_use]
     #[inline(always)]

@@ -28,7 +28,7 @@ use super::layers::Layer;
 pub(super) use super::lists::Fragment;
 use super::map::Reason;
 use super::parts::Depths;
-use super::piece::Piece;
+use super::piece::{Piece, Sampled};
 use super::scene::{ItemDraw, Kind};
 use super::{Counts, Setting, search};
 use zga_abi::format::BlendMode;
@@ -55,6 +55,12 @@ impl Pixel<'_> {
     pub(super) fn depth(&self, fragment: usize, sample: u32) -> i32 {
         let [x, y] = self.place;
         self.piece(fragment).depth(self.setting, x, y, search::offset_of(self.setting.grid, sample))
+    }
+
+    /// Depths of a fragment at the samples, where they can be said in 64 bits.
+    pub(super) fn sampled(&self, fragment: usize) -> Option<Sampled> {
+        let [x, y] = self.place;
+        self.piece(fragment).sampled(self.setting, x, y)
     }
 
     pub(super) fn depth_of(&self, depths: Depths, sample: u32) -> i32 {

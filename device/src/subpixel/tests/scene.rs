@@ -11,7 +11,7 @@ use zga_firmware::checked::{Clear, DrawState, Rectangle};
 
 const AREA: Rectangle = Rectangle { x: 0, y: 0, right: 8, bottom: 8 };
 
-fn state(effects: Effects, tag: u32) -> DrawState {
+pub(super) fn state(effects: Effects, tag: u32) -> DrawState {
     DrawState {
         effects,
         depth_function: DepthFunction::Less,
