@@ -65,15 +65,18 @@ pixman() {
   done
 }
 
-# What a user types, once.
+# What a user types, at both depths.
 program() {
-  local out=zga-out/x/program.png
-  step "zga x, with a client that ends by itself"
-  rm -f "$out"
-  if ! "$target/release/zga" x --size 640x480 --seconds 3 --out "$out" --stats -- xterm -e 'seq 1 500; sleep 60'; then
-    failed+=("zga x")
-    [ $worst -lt 1 ] && worst=1
-  fi
+  local out=zga-out/x/program.png depth
+  for depth in 24 16; do
+    step "zga x --depth $depth, with a client that ends by itself"
+    rm -f "$out"
+    if ! "$target/release/zga" x --depth $depth --size 640x480 --seconds 3 --out "$out" --stats -- \
+      xterm -e 'seq 1 500; sleep 60' || [ ! -s "$out" ]; then
+      failed+=("zga x --depth $depth")
+      [ $worst -lt 1 ] && worst=1
+    fi
+  done
 }
 
 quick() {
