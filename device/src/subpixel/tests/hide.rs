@@ -14,14 +14,14 @@ use crate::shading::plane::Interpolation;
 use fearless_simd::Level;
 use zga_abi::Effects;
 use zga_abi::format::{DepthFormat, SubpixelDepth, SubpixelResolve};
-use zga_firmware::checked::{Clear, Rectangle};
+use zga_firmware::checked::{Clear, DrawState, Rectangle};
 
 /// Chunks of a line of the target.
 const CHUNKS: u32 = 6;
 /// The target: one band.
 const AREA: Rectangle = Rectangle { x: 0, y: 0, right: 16 * CHUNKS, bottom: LINES as u32 };
 
-/// The band after these triangles of a depth each, their corners in pixels; their number, and what became of the band.
+/// A band with these triangles, corners in pixels and a depth each, as drawing it leaves it, and how many pixels were active.
 fn drawn(triangles: &[([(i32, i32); 3], u32)]) -> (Work, usize) {
     let setting = Setting {
         grid: Grid::G8X8,
@@ -36,7 +36,7 @@ fn drawn(triangles: &[([(i32, i32); 3], u32)]) -> (Work, usize) {
     };
     let mut scene = Scene::default();
     scene.clear(&Clear { area: AREA, colour: Some(0), depth: Some(1 << 20), stencil: None }, true, true);
-    let state = zga_firmware::checked::DrawState { scissor: AREA, ..state(Effects::ANTI_ALIAS, 0) };
+    let state = DrawState { scissor: AREA, ..state(Effects::ANTI_ALIAS, 0) };
     for &(corners, z) in triangles {
         let taken = scene.draw(&state, Some(DepthTest::LESS), Interpolation::Flat, AlphaRule::Vertices).expect("taken");
         let vertices =
