@@ -8,6 +8,7 @@
 //! | [`pixel`] | what follows the interpolated colour: light, texture, fog |
 //! | [`rare`] | the same for lines' ends and for slivers in perspective, pixel by pixel |
 //! | [`resolve`] | runs of visible pixels become frame buffer pixels |
+//! | [`scattered`] | colours at places that lie anywhere, 16 at a time |
 //! | [`light`] | colours of vertices and pixels under lights |
 //! | [`fog`] | fog and depth cueing |
 //! | [`levels`] | products and mixtures of 8-bit levels |
@@ -26,4 +27,5 @@ pub mod pixel;
 pub mod plane;
 pub mod rare;
 pub mod resolve;
+pub mod scattered;
 pub mod source;

@@ -106,12 +106,32 @@ pub struct Place {
     w: f64,
 }
 
-/// 16 places side by side.
+/// 16 places: side by side on one row, or anywhere.
 #[derive(Clone, Copy, Debug)]
-pub struct PlaceLanes {
+pub struct PlaceLanes<J> {
     i: [f64; LANES],
-    j: f64,
+    j: J,
     w: [f64; LANES],
+}
+
+/// How far below the anchor 16 places lie: one number for all, or one each.
+pub trait Below: Copy {
+    /// That of a lane.
+    fn of(&self, lane: usize) -> f64;
+}
+
+impl Below for f64 {
+    #[inline(always)]
+    fn of(&self, _lane: usize) -> f64 {
+        *self
+    }
+}
+
+impl Below for [f64; LANES] {
+    #[inline(always)]
+    fn of(&self, lane: usize) -> f64 {
+        self[lane]
+    }
 }
 
 impl Parameter {
@@ -126,10 +146,11 @@ impl Parameter {
     /// The same for lanes.
     #[must_use]
     #[inline(always)]
-    pub fn at_lanes(&self, places: &PlaceLanes) -> [f64; LANES] {
+    pub fn at_lanes<J: Below>(&self, places: &PlaceLanes<J>) -> [f64; LANES] {
         let mut values = [0.0; LANES];
-        for ((value, i), w) in values.iter_mut().zip(&places.i).zip(&places.w) {
-            *value = (self.over_w.at(*i, places.j) * w).max(self.minimum).min(self.maximum);
+        for (lane, value) in values.iter_mut().enumerate() {
+            let over_w = self.over_w.at(places.i[lane], places.j.of(lane));
+            *value = (over_w * places.w[lane]).max(self.minimum).min(self.maximum);
         }
         values
     }
@@ -187,12 +208,25 @@ impl ParameterPlanes {
     /// The centres of the 16 pixels from (`x`, `y`) on.
     #[must_use]
     #[inline(always)]
-    pub fn places(&self, x: i32, y: i32) -> PlaceLanes {
+    pub fn places(&self, x: i32, y: i32) -> PlaceLanes<f64> {
         let (first, j) = (x - self.anchor[0], f64::from(y - self.anchor[1]));
         let (mut i, mut w) = ([0.0; LANES], [0.0; LANES]);
         for (lane, (i, w)) in (0..).zip(i.iter_mut().zip(&mut w)) {
             *i = f64::from(first + lane);
             *w = 1.0 / self.reciprocal.at(*i, j);
+        }
+        PlaceLanes { i, j, w }
+    }
+
+    /// 16 places, columns and rows in u.
+    #[must_use]
+    #[inline(always)]
+    pub fn scattered(&self, at: &[[i32; LANES]; 2]) -> PlaceLanes<[f64; LANES]> {
+        let [mut i, mut j, mut w] = [[0.0; LANES]; 3];
+        for lane in 0..LANES {
+            let offset = |c: usize| f64::from(at[c][lane] - self.anchor[c] * 256 - 128) / 256.0;
+            (i[lane], j[lane]) = (offset(0), offset(1));
+            w[lane] = 1.0 / self.reciprocal.at(i[lane], j[lane]);
         }
         PlaceLanes { i, j, w }
     }
@@ -209,10 +243,10 @@ impl ParameterPlanes {
     /// The same for lanes.
     #[must_use]
     #[inline(always)]
-    pub fn gradient_lanes(
+    pub fn gradient_lanes<J>(
         &self,
         [u, v]: &[Parameter; 2],
-        places: &PlaceLanes,
+        places: &PlaceLanes<J>,
         at: [&[f64; LANES]; 2],
     ) -> [[f64; LANES]; 4] {
         let mut gradients = [[0.0; LANES]; 4];
@@ -365,8 +399,11 @@ mod tests {
             let both = planes.coordinates.unwrap();
             let [u, v] = both.map(|parameter| parameter.at_lanes(&lanes));
             let gradients = planes.gradient_lanes(&both, &lanes, [&u, &v]);
+            let at = [std::array::from_fn(|lane| (x + lane as i32) * 256 + 128), [y * 256 + 128; LANES]];
+            let scattered = both.map(|parameter| parameter.at_lanes(&planes.scattered(&at)));
             for lane in 0..LANES {
-                let place = planes.place([(x + lane as i32) * 256 + 128, y * 256 + 128]);
+                let place = planes.place([at[0][lane], at[1][lane]]);
+                prop_assert_eq!([u[lane], v[lane]].map(f64::to_bits), scattered.map(|lanes| lanes[lane].to_bits()));
                 let at = both.map(|parameter| parameter.at(&place));
                 prop_assert_eq!([u[lane], v[lane]].map(f64::to_bits), at.map(f64::to_bits));
                 let single = planes.gradients(&both, &place, at);

@@ -17,7 +17,7 @@
 
 use super::fog::FogMixer;
 use super::light::Lights;
-use super::parameters::{LANES, Needed, ParameterPlanes, ParameterTransform, Parameters, Place};
+use super::parameters::{Below, LANES, Needed, ParameterPlanes, ParameterTransform, Parameters, Place, PlaceLanes};
 use crate::built::{Called, FogKey, LightKey, PunchThroughKey, TextureKey};
 use crate::probe::account::{Account, Clocks};
 use crate::texture::{Texture, combine, combine_lanes};
@@ -271,9 +271,9 @@ impl ShadedPlane {
         colour
     }
 
-    /// Texels of those of the 16 pixels from (`x`, `y`) on that are wanted.
+    /// Texels at those of 16 places that are wanted.
     #[inline(always)]
-    fn texel_lanes(&self, textured: &Textured, places: &super::parameters::PlaceLanes, wanted: u16) -> [u32; LANES] {
+    fn texel_lanes<J: Below>(&self, textured: &Textured, places: &PlaceLanes<J>, wanted: u16) -> [u32; LANES] {
         let Some(coordinates) = &self.planes.coordinates else {
             return [0; LANES];
         };
@@ -288,11 +288,11 @@ impl ShadedPlane {
     }
 
     #[inline(always)]
-    fn hole_lanes(&self, x: i32, y: i32, wanted: u16) -> u16 {
+    fn hole_lanes<J: Below>(&self, places: &PlaceLanes<J>, wanted: u16) -> u16 {
         let Some((textured, reference)) = self.punched() else {
             return 0;
         };
-        let texels = self.texel_lanes(textured, &self.planes.places(x, y), wanted);
+        let texels = self.texel_lanes(textured, places, wanted);
         let mut holes = 0;
         for (lane, texel) in texels.iter().enumerate() {
             holes |= u16::from(texel >> 24 < reference) << lane;
@@ -307,7 +307,23 @@ impl ShadedPlane {
     pub fn sixteen<S: Simd>(&self, simd: S, colours: &[u32; LANES], x: i32, y: i32, wanted: u16) -> [u32; LANES] {
         simd.vectorize(
             #[inline(always)]
-            || self.lanes(*colours, x, y, wanted),
+            || self.lanes(*colours, &self.planes.places(x, y), wanted),
+        )
+    }
+
+    /// The same at 16 places anywhere, columns and rows in u.
+    #[must_use]
+    #[inline(never)]
+    pub fn scattered<S: Simd>(
+        &self,
+        simd: S,
+        colours: &[u32; LANES],
+        at: &[[i32; LANES]; 2],
+        wanted: u16,
+    ) -> [u32; LANES] {
+        simd.vectorize(
+            #[inline(always)]
+            || self.lanes(*colours, &self.planes.scattered(at), wanted),
         )
     }
 
@@ -317,18 +333,27 @@ impl ShadedPlane {
     pub fn holes_of_sixteen<S: Simd>(&self, simd: S, x: i32, y: i32, wanted: u16) -> u16 {
         simd.vectorize(
             #[inline(always)]
-            || self.hole_lanes(x, y, wanted),
+            || self.hole_lanes(&self.planes.places(x, y), wanted),
+        )
+    }
+
+    /// The same at 16 places anywhere, columns and rows in u.
+    #[must_use]
+    #[inline(never)]
+    pub fn scattered_holes<S: Simd>(&self, simd: S, at: &[[i32; LANES]; 2], wanted: u16) -> u16 {
+        simd.vectorize(
+            #[inline(always)]
+            || self.hole_lanes(&self.planes.scattered(at), wanted),
         )
     }
 
     #[inline(always)]
-    fn lanes(&self, colours: [u32; LANES], x: i32, y: i32, wanted: u16) -> [u32; LANES] {
-        let (shading, places) = (&*self.shading, self.planes.places(x, y));
-        let mut colours = colours;
+    fn lanes<J: Below>(&self, colours: [u32; LANES], places: &PlaceLanes<J>, wanted: u16) -> [u32; LANES] {
+        let (shading, mut colours) = (&*self.shading, colours);
         if let (Some(lights), Some(surface)) = (&shading.light, &self.planes.surface) {
             let mut parts = [[0.0; LANES]; 6];
             for (part, parameter) in parts.iter_mut().zip(surface) {
-                let values = parameter.at_lanes(&places);
+                let values = parameter.at_lanes(places);
                 for (value, wide) in part.iter_mut().zip(values) {
                     *value = wide as f32;
                 }
@@ -337,12 +362,12 @@ impl ShadedPlane {
             colours = lights.lit_lanes(&colours, &[px, py, pz], &[nx, ny, nz]);
         }
         if let Some(textured) = &shading.texture {
-            let texels = self.texel_lanes(textured, &places, wanted);
+            let texels = self.texel_lanes(textured, places, wanted);
             colours = combine_lanes(textured.texture.function(), &colours, &texels, textured.texture.colour());
         }
         if let (Some(fog), Some(distance)) = (&shading.fog, &self.planes.distance) {
             let mut distances = [0.0; LANES];
-            for (distance, wide) in distances.iter_mut().zip(distance.at_lanes(&places)) {
+            for (distance, wide) in distances.iter_mut().zip(distance.at_lanes(places)) {
                 *distance = wide as f32;
             }
             colours = fog.mixed_lanes(&colours, &distances);

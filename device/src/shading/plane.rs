@@ -66,13 +66,13 @@ pub struct Shade<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct AffinePlane {
     /// Values at the anchor, rounding bias included; [`AffinePlane::FRACTION`] fraction bits, modulo 2^32.
-    reference: [i32; 4],
+    pub(super) reference: [i32; 4],
     /// Change for one pixel to the right.
     pub(super) dx: [i32; 4],
     /// Change for one pixel down.
-    dy: [i32; 4],
+    pub(super) dy: [i32; 4],
     /// Column and row of the anchor.
-    anchor: [i32; 2],
+    pub(super) anchor: [i32; 2],
     /// Least level of the vertices.
     pub(super) minimum: [i32; 4],
     /// Greatest level of the vertices.

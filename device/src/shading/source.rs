@@ -17,6 +17,68 @@ pub struct ColourSource {
     pub(super) reciprocal_w: [f32; 3],
 }
 
+/// What the shares of a triangle's second and third vertex at a place follow from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shares {
+    origin: [f64; 2],
+    /// From the first vertex to the others.
+    edges: [[f64; 2]; 2],
+    /// 1 / twice the area.
+    inverse: f64,
+    /// 1 / w of the others relative to the first's, where that matters.
+    relative_w: Option<[f64; 2]>,
+}
+
+impl Shares {
+    /// The shares at `place`, u.
+    #[inline(always)]
+    pub(super) fn at(&self, place: [i32; 2]) -> [f64; 2] {
+        let [[x1, y1], [x2, y2]] = self.edges;
+        let (px, py) = (f64::from(place[0]) - self.origin[0], f64::from(place[1]) - self.origin[1]);
+        let share = [(px * y2 - py * x2) * self.inverse, (x1 * py - y1 * px) * self.inverse];
+        let Some(w) = self.relative_w else {
+            return share;
+        };
+        let weights = [1.0 - share[0] - share[1], share[0] * w[0], share[1] * w[1]];
+        let inverse = 1.0 / (weights[0] + weights[1] + weights[2]);
+        [weights[1] * inverse, weights[2] * inverse]
+    }
+}
+
+/// One channel of a triangle's colours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mixture {
+    /// Level of the first vertex.
+    first: f64,
+    /// From it to the others.
+    rises: [f64; 2],
+    /// Least and greatest level of the vertices.
+    limits: [f64; 2],
+}
+
+impl Mixture {
+    /// The level where the other vertices have these shares, and 1/2.
+    #[inline(always)]
+    fn level_and_half(&self, shares: [f64; 2]) -> f64 {
+        let value = self.first + shares[0] * self.rises[0] + shares[1] * self.rises[1];
+        // max and min put the range's ends where there is a NaN.
+        value.max(self.limits[0]).min(self.limits[1]) + 0.5
+    }
+
+    /// The level where the other vertices have these shares.
+    #[inline(always)]
+    pub(super) fn level(&self, shares: [f64; 2]) -> u8 {
+        self.level_and_half(shares) as u8
+    }
+
+    /// The same without a conversion, for which lanes have no instruction: a whole number beside 2^52 is what the last
+    /// bits of the sum say.
+    #[inline(always)]
+    pub(super) fn level_in_lane(&self, shares: [f64; 2]) -> u32 {
+        (self.level_and_half(shares).floor() + (1_u64 << 52) as f64).to_bits() as u32
+    }
+}
+
 impl ColourSource {
     /// The source of a primitive with these vertices.
     #[must_use]
@@ -55,27 +117,37 @@ impl ColourSource {
     /// The reference in f64, with the clamp and the rounding of the planes.
     #[must_use]
     pub fn colour_at(&self, place: [i32; 2], interpolation: Interpolation) -> u32 {
-        let flat = self.colour[0] == self.colour[1] && self.colour[0] == self.colour[2];
-        if interpolation == Interpolation::Flat || flat {
+        if interpolation == Interpolation::Flat || self.is_even() {
             return self.flat();
         }
+        let shares = self.shares(interpolation).at(place);
+        u32::from_le_bytes(std::array::from_fn(|k| self.mixture(k).level(shares)))
+    }
+
+    /// All vertices have one colour.
+    #[inline(always)]
+    pub(super) fn is_even(&self) -> bool {
+        self.colour[0] == self.colour[1] && self.colour[0] == self.colour[2]
+    }
+
+    /// What the shares of the vertices at a place follow from.
+    #[inline(always)]
+    pub(super) fn shares(&self, interpolation: Interpolation) -> Shares {
         // Differences of coordinates have 25 bits, their products 50: exact in f64.
         let [x0, y0] = self.position[0].map(f64::from);
-        let along = |[x, y]: [i32; 2]| (f64::from(x) - x0, f64::from(y) - y0);
-        let ((x1, y1), (x2, y2), (px, py)) = (along(self.position[1]), along(self.position[2]), along(place));
-        let inverse = 1.0 / (x1 * y2 - y1 * x2);
-        let mut share = [(px * y2 - py * x2) * inverse, (x1 * py - y1 * px) * inverse];
-        if interpolation == Interpolation::Perspective {
-            let weights = [(1.0 - share[0] - share[1]), share[0] * self.relative_w(1), share[1] * self.relative_w(2)];
-            let inverse = 1.0 / (weights[0] + weights[1] + weights[2]);
-            share = [weights[1] * inverse, weights[2] * inverse];
-        }
-        let [a, b, c] = self.colour.map(|colour| colour.to_le_bytes().map(f64::from));
-        let levels: [u8; 4] = std::array::from_fn(|k| {
-            let value = a[k] + share[0] * (b[k] - a[k]) + share[1] * (c[k] - a[k]);
-            (value.max(a[k].min(b[k]).min(c[k])).min(a[k].max(b[k]).max(c[k])) + 0.5) as u8
-        });
-        u32::from_le_bytes(levels)
+        let along = |[x, y]: [i32; 2]| [f64::from(x) - x0, f64::from(y) - y0];
+        let edges = [along(self.position[1]), along(self.position[2])];
+        let [[x1, y1], [x2, y2]] = edges;
+        let relative_w =
+            (interpolation == Interpolation::Perspective).then(|| [self.relative_w(1), self.relative_w(2)]);
+        Shares { origin: [x0, y0], edges, inverse: 1.0 / (x1 * y2 - y1 * x2), relative_w }
+    }
+
+    /// Channel `k` at the vertices.
+    #[inline(always)]
+    pub(super) fn mixture(&self, k: usize) -> Mixture {
+        let [a, b, c] = [0, 1, 2].map(|vertex| f64::from(self.channel(vertex, k)));
+        Mixture { first: a, rises: [b - a, c - a], limits: [a.min(b).min(c), a.max(b).max(c)] }
     }
 
     /// 1 / w of vertex `n` relative to vertex 0: keeps planes in range for any w.

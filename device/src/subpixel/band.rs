@@ -10,7 +10,8 @@
 //! Everything here must equal [`super::specification`] at every SIMD level.
 
 use super::bands::Entry;
-use super::gamma::Space;
+use super::brief::Brief;
+use super::finish::Pixels;
 use super::hide::{OPEN, Span, UNTOUCHED};
 use super::left;
 use super::lists::{Fragment, Lists};
@@ -18,7 +19,7 @@ use super::map::Reason;
 use super::parts::Resolver;
 use super::piece::{Cover, Piece, extent};
 use super::scene::{Base, Item, Rule, Scene};
-use super::shader::Shader;
+use super::shader::{Rings, Shader};
 use super::{Counts, Setting, specification};
 use crate::hidden::z_buffer::kernel::LANES;
 use fearless_simd::{Level, Simd, dispatch};
@@ -55,12 +56,14 @@ pub struct Work {
     pub(super) stacked: Vec<u8>,
     /// Items of the band from the nearest to the farthest, so far as that may save time.
     order: Vec<Entry>,
-    /// Fragments of one pixel.
-    pub(super) list: Vec<Fragment>,
     /// Fragments in the lists of each line.
-    used: [usize; LINES],
+    pub(super) used: [usize; LINES],
+    /// The pieces in brief.
+    pub(super) briefs: Vec<Brief>,
+    pub(super) pixels: Pixels,
     pub(super) resolver: Resolver,
     pub(super) shader: Shader,
+    pub(super) rings: Rings,
 }
 
 /// What a band is given.
@@ -226,7 +229,7 @@ impl Work {
             _ => dispatch!(level, simd => self.gather::<_, 8, 8>(simd, input, area)),
         }
         if !self.lists.is_full() {
-            return self.finish(input, out, counts);
+            return self.finish(level, input, out, counts);
         }
         self.each_active(input, |work, at, _| work.lists.drop(at));
         let [[left, first], [right, beyond]] = area;
@@ -357,46 +360,18 @@ impl Work {
     }
 
     /// Resolves the pixels that may be active, and are.
-    fn finish(&mut self, input: &Input<'_>, out: &mut Vec<Resolved>, counts: &mut Counts) {
-        self.shader.begin(input.setting, self.pieces.len());
-        let space = Space::new(input.setting.resolve);
-        let mut list = std::mem::take(&mut self.list);
-        self.each_active(input, |work, at, [x, line]| {
+    fn finish(&mut self, level: Level, input: &Input<'_>, out: &mut Vec<Resolved>, counts: &mut Counts) {
+        let mut list = self.open_pixels(input);
+        self.each_active(input, |work, at, place| {
+            let first = list.len();
             work.lists.take(at, &mut list);
-            if left::keep(work, input, &mut list, [x, line]) {
-                work.pixel(input, space, &mut list, [x, line], out, counts);
+            match left::keep(work, input, &mut list, first, place) {
+                Some(apart) => work.take_up(input, &mut list, first, place, apart, counts),
+                None => list.truncate(first),
             }
         });
-        self.list = list;
-    }
-
-    /// Resolves an active pixel, from what is left there in order of submission.
-    #[inline(always)]
-    pub(super) fn pixel(
-        &mut self,
-        input: &Input<'_>,
-        space: Space,
-        list: &mut [Fragment],
-        [x, line]: [usize; 2],
-        out: &mut Vec<Resolved>,
-        counts: &mut Counts,
-    ) {
-        let full = input.setting.grid.full();
-        counts.masks += list.iter().filter(|fragment| fragment.mask != full).count() as u64;
-        let y = input.top as usize + line;
-        let mut resolved = Resolved { x: x as u16, y: y as u16, colour: 0, reason: Reason::Degraded };
-        if self.used[line] + list.len() > input.setting.pool as usize {
-            counts.degraded += 1;
-            out.push(resolved);
-            return;
-        }
-        self.used[line] += list.len();
-        let (scene, width) = (input.scene, input.setting.size[0] as usize);
-        let base = (scene.colour.at(y * width + x), scene.depth.at(y * width + x));
-        let place = [x as i32, y as i32];
-        (resolved.colour, resolved.reason) =
-            self.resolve(input.setting, space, &scene.draws, list, place, base, counts);
-        out.push(resolved);
+        self.pixels.fragments = list;
+        self.close_pixels(Some(level), input, out, counts);
     }
 }
 

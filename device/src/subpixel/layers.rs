@@ -8,7 +8,6 @@ use super::gamma::{Space, WHITE};
 use super::parts::{Depths, Paint, Part, Resolver};
 use super::piece::Sampled;
 use super::pixel::{Pixel, samples};
-use super::shader::Shader;
 use super::{Counts, search};
 use zga_abi::format::{BlendMode, SubpixelDepth};
 
@@ -82,13 +81,13 @@ impl Layer {
 
 impl Resolver {
     /// Values of all parts with the layers over them, in `classes`.
-    pub(super) fn compose(&mut self, pixel: &Pixel<'_>, shader: &mut Shader, counts: &mut Counts) {
+    pub(super) fn compose(&mut self, pixel: &Pixel<'_>, counts: &mut Counts) {
         self.classes.clear();
         for index in 0..self.parts.len() {
             let Part { mask, paint, depths } = self.parts[index];
             let value = match paint {
                 Paint::Plain(colour) => pixel.space.of(colour),
-                Paint::Fragment(fragment) => pixel.space.of(shader.colour(pixel, fragment, counts)),
+                Paint::Fragment(fragment) => pixel.space.of(pixel.colour(fragment, counts)),
                 Paint::Mixed(place) => self.mixed[place],
             };
             self.classes.push(Class { mask, value, depths });

@@ -17,77 +17,112 @@ use crate::hidden::z_buffer::specification::covers;
 /// So many fragments are put in order by insertion.
 const FEW: usize = 16;
 
-/// Drops the fragments that are hidden, and puts the others in order of submission. Whether the pixel in column `x` of
-/// line `line` is active.
+/// Drops those fragments of a pixel, the last of `list` from place `first` on, that are hidden, and puts the others in
+/// order of submission. `None` if the pixel in column `x` of line `line` is not active, else whether no sample of it is
+/// covered twice.
 #[inline(always)]
-pub(super) fn keep(work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, [x, line]: [usize; 2]) -> bool {
-    if list.is_empty() {
-        return false;
+pub(super) fn keep(
+    work: &Work,
+    input: &Input<'_>,
+    list: &mut Vec<Fragment>,
+    first: usize,
+    [x, line]: [usize; 2],
+) -> Option<bool> {
+    if list.len() == first {
+        return None;
     }
+    let mut cover = Cover::new(work, &list[first..]);
     if input.setting.rule != Rule::InOrder {
         let base = input.base_at(x, line);
-        let limit = limit(work, input, list, base);
-        let left = list.len() + usize::from(base <= limit);
-        if left < 2 || (limit < base && is_plain(work, input, list, limit, [x as i32, input.top + line as i32])) {
-            return false;
+        let limit = cover.limit(work, input, list, first, base);
+        let left = list.len() - first + usize::from(base <= limit);
+        let place = [x as i32, input.top + line as i32];
+        if left < 2 || (limit < base && is_plain(work, input, &list[first..], limit, place)) {
+            return None;
         }
     }
-    let number = |fragment: &Fragment| work.numbers[fragment.piece as usize];
+    let list = &mut list[first..];
+    let item = |fragment: &Fragment| work.briefs[fragment.piece as usize].item;
     if list.len() > FEW {
-        list.sort_unstable_by_key(number);
-        return true;
+        list.sort_unstable_by_key(item);
+        return Some(cover.twice == 0);
     }
     for end in 1..list.len() {
         let mut place = end;
-        while place > 0 && number(&list[place - 1]) > number(&list[place]) {
+        while place > 0 && item(&list[place - 1]) > item(&list[place]) {
             list.swap(place - 1, place);
             place -= 1;
         }
     }
-    true
+    Some(cover.twice == 0)
 }
 
-/// The limit of a pixel, behind which nothing of `list` stays.
-#[inline(always)]
-fn limit(work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, base: i32) -> i32 {
-    let full = input.setting.grid.full();
-    let (mut all, mut twice, mut odd, mut far) = (0, 0, false, i32::MIN);
-    for fragment in &*list {
-        twice |= all & fragment.mask;
-        all |= fragment.mask;
-        far = far.max(fragment.far);
-        odd |= fragment.mask == 0 || work.pieces[fragment.piece as usize].layer;
+/// What the fragments of a pixel cover.
+struct Cover {
+    /// By any.
+    all: u64,
+    /// By two or more.
+    twice: u64,
+    /// One of them covers no sample, or hides nothing.
+    odd: bool,
+    /// The farthest of them.
+    far: i32,
+}
+
+impl Cover {
+    #[inline(always)]
+    fn new(work: &Work, list: &[Fragment]) -> Cover {
+        let mut cover = Cover { all: 0, twice: 0, odd: false, far: i32::MIN };
+        for fragment in list {
+            cover.twice |= cover.all & fragment.mask;
+            cover.all |= fragment.mask;
+            cover.far = cover.far.max(fragment.far);
+            cover.odd |= fragment.mask == 0 || work.briefs[fragment.piece as usize].layer;
+        }
+        cover
     }
-    // Without any of them there are samples that are not covered.
-    if twice == 0 && !odd {
-        return if all == full { far.min(base) } else { base };
+
+    /// The limit of a pixel, behind which nothing of `list` stays from place `first` on.
+    #[inline(always)]
+    fn limit(&mut self, work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, first: usize, base: i32) -> i32 {
+        let full = input.setting.grid.full();
+        // Without any of them there are samples that are not covered.
+        if self.twice == 0 && !self.odd {
+            return if self.all == full { self.far.min(base) } else { base };
+        }
+        if self.all != full {
+            return base;
+        }
+        list[first..].sort_unstable_by_key(|fragment| fragment.far);
+        let mut union = 0;
+        let opaque = list[first..].iter().filter(|fragment| !work.briefs[fragment.piece as usize].layer);
+        let limit = opaque.into_iter().find_map(|fragment| {
+            union |= fragment.mask;
+            (union == full).then_some(fragment.far)
+        });
+        let limit = limit.map_or(base, |limit| limit.min(base));
+        let mut beyond = first;
+        for place in first..list.len() {
+            if list[place].near <= limit {
+                list[beyond] = list[place];
+                beyond += 1;
+            }
+        }
+        list.truncate(beyond);
+        *self = Cover::new(work, &list[first..]);
+        limit
     }
-    if all != full {
-        return base;
-    }
-    list.sort_unstable_by_key(|fragment| fragment.far);
-    let mut union = 0;
-    let opaque = list.iter().filter(|fragment| !work.pieces[fragment.piece as usize].layer);
-    let limit = opaque.into_iter().find_map(|fragment| {
-        union |= fragment.mask;
-        (union == full).then_some(fragment.far)
-    });
-    let limit = limit.map_or(base, |limit| limit.min(base));
-    list.retain(|fragment| fragment.near <= limit);
-    limit
 }
 
 /// Whether all that is left has one colour, and the path has drawn it.
 #[inline(always)]
 fn is_plain(work: &Work, input: &Input<'_>, list: &[Fragment], limit: i32, place: [i32; 2]) -> bool {
-    let piece = |fragment: &Fragment| &work.pieces[fragment.piece as usize];
-    let Some(colour) = piece(&list[0]).plain else {
-        return false;
-    };
-    list.iter().all(|fragment| piece(fragment).plain == Some(colour) && !piece(fragment).layer)
-        && list
-            .iter()
-            .any(|fragment| fragment.far <= limit && covers_centre(input, piece(fragment), fragment.mask, place))
+    let brief = |fragment: &Fragment| &work.briefs[fragment.piece as usize];
+    let colour = brief(&list[0]).colour;
+    let covers =
+        |fragment: &Fragment| covers_centre(input, &work.pieces[fragment.piece as usize], fragment.mask, place);
+    list.iter().map(brief).all(|brief| brief.plain && brief.colour == colour && !brief.layer)
+        && list.iter().any(|fragment| fragment.far <= limit && covers(fragment))
 }
 
 /// Whether a fragment covers its pixel's centre.

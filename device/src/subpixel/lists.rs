@@ -128,15 +128,14 @@ impl Lists {
         }
     }
 
-    /// Moves the fragments of a pixel to `list`.
+    /// Moves the fragments of a pixel to the end of `list`.
     #[inline(always)]
     pub(super) fn take(&mut self, at: usize, list: &mut Vec<Fragment>) {
-        list.clear();
         let place = std::mem::take(&mut self.places[at]) as usize;
         let Some(head) = self.heads.get(place.wrapping_sub(1)) else {
             return;
         };
-        list.extend_from_slice(&head.near[..(head.count as usize).min(NEAR)]);
+        list.extend(head.near[..(head.count as usize).min(NEAR)].iter().copied());
         let mut next = head.near[0].next;
         while next != 0 {
             let fragment = self.stored[next as usize - 1];

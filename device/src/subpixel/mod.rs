@@ -43,7 +43,9 @@
 
 pub mod band;
 mod bands;
+mod brief;
 mod cover;
+mod finish;
 pub mod gamma;
 pub mod grid;
 mod hide;
@@ -66,7 +68,7 @@ pub mod unit;
 use crate::probe::account::{Account, Clocks};
 use crate::shading::pixel::ShadingCounts;
 use grid::Grid;
-use scene::Rule;
+use scene::{ItemDraw, Rule};
 use zga_abi::Counter;
 use zga_abi::format::{DepthFormat, Fidelity, SubpixelDepth, SubpixelGrid, SubpixelResolve};
 use zga_firmware::checked::Target;
@@ -171,6 +173,16 @@ impl crate::pipeline::bands::Counts for Counts {
 }
 
 impl Counts {
+    /// Adds what the colours of so many fragments of a draw cost.
+    fn shade(&mut self, draw: &ItemDraw, fragments: u64) {
+        if draw.is_shaded() {
+            self.shaded += fragments;
+        }
+        if let Some(shading) = &draw.shading {
+            self.shading = self.shading.plus(shading.pixel.cost().times(fragments));
+        }
+    }
+
     /// Clocks of the unit, without shading.
     #[must_use]
     pub fn clocks(&self) -> Clocks {

@@ -2,13 +2,15 @@
 //!
 //! What each test, range and merge means is told in [`super::pixel`].
 
+use super::brief::Brief;
+use super::finish::Shares;
+use super::grid::Offset;
 use super::layers::{Class, Layer, LayerDepths, Run};
 use super::lists::Fragment;
 use super::piece::{Piece, Sampled};
 use super::pixel::{Pixel, samples};
 use super::scene::{ItemDraw, Kind, Rule};
 use super::search::{self, DepthRange, Extreme};
-use super::shader::Shader;
 use super::{Counts, Setting, search_clocked};
 use crate::hidden::z_buffer::DepthTest;
 use zga_abi::format::SubpixelDepth;
@@ -76,67 +78,50 @@ fn decided(test: DepthTest, new: [i32; 2], stored: [i32; 2]) -> Option<bool> {
 }
 
 impl Resolver {
-    pub(super) fn begin(&mut self, setting: &Setting, (colour, depth): (u32, i32), fragments: usize) {
+    pub(super) fn begin(&mut self, pixel: &Pixel<'_>) {
         self.parts.clear();
         self.layers.clear();
         self.mixed.clear();
         self.known.clear();
-        self.known.resize(fragments, Known::default());
+        self.known.resize(pixel.fragments.len(), Known::default());
+        let (colour, depth) = pixel.base;
         self.parts.push(Part {
-            mask: setting.grid.full(),
+            mask: pixel.setting.grid.full(),
             paint: Paint::Plain(colour),
             depths: Depths::Constant(depth),
         });
     }
 
-    /// The pixel where no sample is covered twice, all is opaque and nothing was nearer before: nothing is to be ordered.
-    /// `None` if it is not so simple.
+    /// The pixel where no sample is covered twice, if all is opaque and nothing was nearer before: nothing is to be
+    /// ordered. Whether it is so simple.
     #[inline(always)]
-    pub(super) fn mosaic(
-        &mut self,
-        pixel: &Pixel<'_>,
-        (colour, depth): (u32, i32),
-        shader: &mut Shader,
-        counts: &mut Counts,
-    ) -> Option<u32> {
-        let simple = |fragment: &Fragment| {
-            let piece = &pixel.pieces[fragment.piece as usize];
+    pub(super) fn mosaic(&mut self, pixel: &Pixel<'_>, shares: &mut Shares, counts: &mut Counts) -> bool {
+        let (colour, depth) = pixel.base;
+        let mut rest = pixel.setting.grid.full();
+        for (number, fragment) in pixel.fragments.iter().enumerate() {
+            let brief = pixel.brief(number);
             let before = match pixel.setting.rule {
-                Rule::Nearest => piece.plane.maximum < depth,
+                Rule::Nearest => brief.range[1] < depth,
                 Rule::Last => true,
                 Rule::InOrder => false,
             };
-            before && !piece.layer
-        };
-        if !pixel.fragments.iter().all(simple) {
-            return None;
-        }
-        if !pixel.space.is_of_values() {
-            return None;
-        }
-        self.seen.clear();
-        let mut rest = pixel.setting.grid.full();
-        let (mut sum, mut first, mut same) = (0, None, true);
-        let mut add = |colour: u32, mask: u64| {
-            same &= *first.get_or_insert(colour) == colour;
-            sum += spread(colour) * u64::from(mask.count_ones());
-        };
-        for (number, &Fragment { mask, .. }) in pixel.fragments.iter().enumerate() {
-            if mask != 0 {
-                rest &= !mask;
-                add(shader.colour(pixel, number, counts), mask);
-                self.merge(pixel, number, counts);
+            if !before || brief.layer {
+                return false;
             }
+            rest &= !fragment.mask;
         }
         if rest != 0 {
             counts.packed += 1;
-            add(colour, rest);
+            shares.plain(colour, rest);
         }
-        counts.active += 1;
-        // Half up; the number of samples is a power of two.
-        let count = pixel.setting.grid.samples();
-        let mean = (sum + u64::from(count / 2) * 0x0001_0001_0001_0001) >> count.ilog2();
-        Some(if same { first.unwrap_or(colour) } else { gathered(mean) })
+        self.seen.clear();
+        for (number, &Fragment { mask, .. }) in pixel.fragments.iter().enumerate() {
+            if mask != 0 {
+                shares.fragment(pixel, number, mask, counts);
+                self.merge(pixel, number, counts);
+            }
+        }
+        true
     }
 
     /// Depth range of a fragment as the setting has it, found when it is first asked for.
@@ -237,9 +222,9 @@ impl Resolver {
     }
 
     /// A clear: of colours, which also takes the layers; of depths, which composes them first.
-    pub(super) fn clear(&mut self, pixel: &Pixel<'_>, clear: &ItemDraw, shader: &mut Shader, counts: &mut Counts) {
+    pub(super) fn clear(&mut self, pixel: &Pixel<'_>, clear: &ItemDraw, counts: &mut Counts) {
         if clear.colour.is_none() && self.layers.iter().any(|layer| layer.mask != 0) {
-            self.compose(pixel, shader, counts);
+            self.compose(pixel, counts);
             self.parts.clear();
             for class in &self.classes {
                 self.mixed.push(class.value);
@@ -254,52 +239,28 @@ impl Resolver {
         }
     }
 
-    /// The mean of the samples.
-    pub(super) fn finish(&mut self, pixel: &Pixel<'_>, shader: &mut Shader, counts: &mut Counts) -> u32 {
+    /// The shares of the parts, with the layers over them.
+    pub(super) fn finish(&mut self, pixel: &Pixel<'_>, shares: &mut Shares, counts: &mut Counts) {
         self.merge_parts(pixel, counts);
-        let count = pixel.setting.grid.samples();
         if self.layers.iter().all(|layer| layer.mask == 0) && self.mixed.is_empty() {
-            return self.mean_of_levels(pixel, shader, counts);
+            for part in &self.parts {
+                match part.paint {
+                    Paint::Plain(colour) => shares.plain(colour, part.mask),
+                    Paint::Fragment(fragment) => shares.fragment(pixel, fragment, part.mask, counts),
+                    // None is left.
+                    Paint::Mixed(_) => {}
+                }
+            }
+            return;
         }
-        self.compose(pixel, shader, counts);
+        self.compose(pixel, counts);
         let mut sum = [0.0; 4];
         for class in &self.classes {
             let weight = f64::from(class.mask.count_ones());
             sum = [0, 1, 2, 3].map(|c| sum[c] + weight * class.value[c]);
         }
-        pixel.space.colour(sum.map(|c| c / f64::from(count)))
-    }
-
-    /// The mean where all parts have plain colours.
-    fn mean_of_levels(&mut self, pixel: &Pixel<'_>, shader: &mut Shader, counts: &mut Counts) -> u32 {
-        let count = pixel.setting.grid.samples();
-        let mut sum = [0_u32; 4];
-        let mut light = [0.0; 4];
-        let (mut first, mut same) = (None, true);
-        for part in &self.parts {
-            let colour = match part.paint {
-                Paint::Plain(colour) => colour,
-                Paint::Fragment(fragment) => shader.colour(pixel, fragment, counts),
-                // None is left: see `finish`.
-                Paint::Mixed(_) => 0,
-            };
-            same &= *first.get_or_insert(colour) == colour;
-            let weight = part.mask.count_ones();
-            let levels = colour.to_le_bytes();
-            sum = [0, 1, 2, 3].map(|c| sum[c] + weight * u32::from(levels[c]));
-            if !pixel.space.is_of_values() {
-                let there = pixel.space.of(colour);
-                light = [0, 1, 2, 3].map(|c| light[c] + f64::from(weight) * there[c]);
-            }
-        }
-        if same {
-            return first.unwrap_or(0);
-        }
-        if pixel.space.is_of_values() {
-            // Half up; the number of samples is a power of two.
-            return u32::from_le_bytes(sum.map(|c| ((c + count / 2) >> count.ilog2()) as u8));
-        }
-        pixel.space.colour([0, 1, 2, 3].map(|c| if c < 3 { light[c] } else { f64::from(sum[c]) } / f64::from(count)))
+        let grid = pixel.setting.grid;
+        shares.plain(pixel.space.colour(sum.map(|c| c / f64::from(grid.samples()))), grid.full());
     }
 
     /// Counts what of the opaque is packed, and what is merged before.
@@ -316,9 +277,7 @@ impl Resolver {
     /// Merges a fragment with one that was seen before, or packs it.
     #[inline(always)]
     fn merge(&mut self, pixel: &Pixel<'_>, fragment: usize, counts: &mut Counts) {
-        let piece = pixel.piece(fragment);
-        let ItemDraw { tag, test, .. } = pixel.draws[piece.draw as usize];
-        let bounds = if test.is_some() { [piece.plane.minimum, piece.plane.maximum] } else { [0; 2] };
+        let Brief { tag, range: bounds, .. } = *pixel.brief(fragment);
         for (seen, range) in &mut self.seen {
             if *seen == tag && range[0] <= bounds[1] && bounds[0] <= range[1] {
                 *range = [range[0].min(bounds[0]), range[1].max(bounds[1])];
@@ -329,19 +288,6 @@ impl Resolver {
         self.seen.push((tag, bounds));
         counts.packed += 1;
     }
-}
-
-/// The four levels of a colour in 16 bits each, so that 64 of them add up: 0 and 2, then 1 and 3.
-#[inline(always)]
-fn spread(colour: u32) -> u64 {
-    let colour = u64::from(colour);
-    (colour & 0x00FF_00FF) | ((colour >> 8) & 0x00FF_00FF) << 32
-}
-
-/// The reverse of [`spread`], for levels that fit; what lies above each is dropped.
-#[inline(always)]
-fn gathered(levels: u64) -> u32 {
-    (levels & 0x00FF_00FF) as u32 | (((levels >> 32) & 0x00FF_00FF) << 8) as u32
 }
 
 /// Depth range of a fragment, with the events that finding it takes.
@@ -371,19 +317,28 @@ fn range_of(pixel: &Pixel<'_>, fragment: usize, counts: &mut Counts) -> [i32; 2]
 /// Two searches: by tables, or clock by clock.
 fn searched(pixel: &Pixel<'_>, piece: &Piece, mask: u64) -> DepthRange {
     let (setting, [x, y]) = (pixel.setting, pixel.place);
-    let depth = |offset| piece.depth(setting, x, y, offset);
     let slopes = piece.slopes();
-    let found = if setting.clocked {
-        let extreme = |extreme| search_clocked::extreme_of(setting.grid, mask, slopes, extreme, depth).0;
-        extreme(Extreme::Nearest).zip(extreme(Extreme::Farthest)).map(|(near, far)| DepthRange {
-            nearest: near.depth.min(far.depth),
-            farthest: near.depth.max(far.depth),
-            steps: near.steps + far.steps,
-            evaluations: near.evaluations + far.evaluations,
-        })
-    } else {
-        search::range_of(setting.grid, mask, slopes, depth)
+    let found = match piece.sampled(setting, x, y) {
+        Some(sampled) if !setting.clocked => search::range_of(setting.grid, mask, slopes, |at| sampled.depth(at)),
+        _ => {
+            let depth = |offset| piece.depth(setting, x, y, offset);
+            match setting.clocked {
+                true => clocked(setting, mask, slopes, depth),
+                false => search::range_of(setting.grid, mask, slopes, depth),
+            }
+        }
     };
     // PANIC: a range is only asked for where samples are shared: the fragment covers one at least.
     found.unwrap_or_else(|| unreachable!("a fragment of no sample"))
+}
+
+/// Two searches, clock by clock.
+fn clocked(setting: &Setting, mask: u64, slopes: [i64; 2], depth: impl Fn(Offset) -> i32) -> Option<DepthRange> {
+    let extreme = |extreme| search_clocked::extreme_of(setting.grid, mask, slopes, extreme, &depth).0;
+    extreme(Extreme::Nearest).zip(extreme(Extreme::Farthest)).map(|(near, far)| DepthRange {
+        nearest: near.depth.min(far.depth),
+        farthest: near.depth.max(far.depth),
+        steps: near.steps + far.steps,
+        evaluations: near.evaluations + far.evaluations,
+    })
 }

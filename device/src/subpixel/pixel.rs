@@ -22,14 +22,16 @@
 //! *Pack*: the contribution of what is seen is the number of its samples over all. Layers are composed from the
 //! farthest to the nearest over each part; where their ranges overlap, sample by sample.
 
-use super::band::Work;
+use super::brief::Brief;
+use super::finish::{Early, Shares};
 use super::gamma::Space;
 use super::layers::Layer;
-pub(super) use super::lists::Fragment;
+use super::lists::Fragment;
 use super::map::Reason;
-use super::parts::Depths;
+use super::parts::{Depths, Resolver};
 use super::piece::{Piece, Sampled};
-use super::scene::{ItemDraw, Kind};
+use super::scene::ItemDraw;
+use super::shader::{Rings, Source};
 use super::{Counts, Setting, search};
 use zga_abi::format::BlendMode;
 
@@ -37,19 +39,42 @@ use zga_abi::format::BlendMode;
 pub(super) struct Pixel<'a> {
     pub(super) setting: &'a Setting,
     pub(super) space: Space,
-    pub(super) draws: &'a [ItemDraw],
-    pub(super) pieces: &'a [Piece],
+    pub(super) source: Source<'a>,
+    pub(super) briefs: &'a [Brief],
+    pub(super) rings: &'a Rings,
+    /// What is known of its fragments beforehand; empty where no piece of the band is a layer.
+    pub(super) early: &'a [Early],
     pub(super) fragments: &'a [Fragment],
     pub(super) place: [i32; 2],
+    /// Colour (RGBA, R in 7:0) and depth before the first item.
+    pub(super) base: (u32, i32),
 }
 
 impl Pixel<'_> {
     pub(super) fn piece(&self, fragment: usize) -> &Piece {
-        &self.pieces[self.fragments[fragment].piece as usize]
+        &self.source.pieces[self.fragments[fragment].piece as usize]
+    }
+
+    #[inline(always)]
+    pub(super) fn brief(&self, fragment: usize) -> &Brief {
+        &self.briefs[self.fragments[fragment].piece as usize]
     }
 
     pub(super) fn draw(&self, fragment: usize) -> &ItemDraw {
-        &self.draws[self.piece(fragment).draw as usize]
+        &self.source.draws[self.piece(fragment).draw as usize]
+    }
+
+    /// What is known of a fragment beforehand.
+    #[inline(always)]
+    pub(super) fn early(&self, fragment: usize) -> Early {
+        self.early.get(fragment).copied().unwrap_or_default()
+    }
+
+    /// Colour of a fragment of a pixel with layers.
+    pub(super) fn colour(&self, fragment: usize, counts: &mut Counts) -> u32 {
+        counts.shade(self.draw(fragment), 1);
+        // Found beforehand for all that have samples; none that has not is seen.
+        self.early(fragment).colour.unwrap_or_default()
     }
 
     pub(super) fn depth(&self, fragment: usize, sample: u32) -> i32 {
@@ -81,72 +106,58 @@ pub(super) fn samples(setting: &Setting, mut mask: u64) -> impl Iterator<Item = 
     })
 }
 
-impl Work {
-    /// The colour (RGBA, R in 7:0) of pixel (`x`, `y`), from its fragments in order of submission, and why it was
-    /// taken up.
-    #[expect(clippy::too_many_arguments, reason = "one pixel's inputs, from its one caller")]
-    pub fn resolve(
+impl Resolver {
+    /// Cuts a pixel into shares, from its fragments in order of submission; `apart` if no sample is covered twice. Why it
+    /// was taken up.
+    #[inline(always)]
+    pub(super) fn resolve(
         &mut self,
-        setting: &Setting,
-        space: Space,
-        draws: &[ItemDraw],
-        fragments: &[Fragment],
-        place: [i32; 2],
-        base: (u32, i32),
+        pixel: &Pixel<'_>,
+        apart: bool,
+        shares: &mut Shares,
         counts: &mut Counts,
-    ) -> (u32, Reason) {
-        let full = setting.grid.full();
-        let apart = disjoint(fragments);
-        let pixel = Pixel { setting, space, draws, pieces: &self.pieces, fragments, place };
-        let resolver = &mut self.resolver;
-        if apart && let Some(colour) = resolver.mosaic(&pixel, base, &mut self.shader, counts) {
-            return (colour, Reason::Edge);
+    ) -> Reason {
+        if apart && self.mosaic(pixel, shares, counts) {
+            return Reason::Edge;
         }
-        resolver.begin(setting, base, fragments.len());
+        self.stack(pixel, shares, counts)
+    }
+
+    /// The same where fragments lie over one another.
+    fn stack(&mut self, pixel: &Pixel<'_>, shares: &mut Shares, counts: &mut Counts) -> Reason {
+        let full = pixel.setting.grid.full();
+        self.begin(pixel);
         let mut reason = Reason::Crossing;
-        for (number, fragment) in fragments.iter().enumerate() {
-            let piece = pixel.piece(number);
-            let draw = &draws[piece.draw as usize];
-            if piece.kind == Kind::Clear {
-                resolver.clear(&pixel, draw, &mut self.shader, counts);
+        for (number, fragment) in pixel.fragments.iter().enumerate() {
+            let (brief, draw) = (pixel.brief(number), pixel.draw(number));
+            if brief.clear {
+                self.clear(pixel, draw, counts);
                 continue;
             }
             if fragment.mask != full {
                 reason = reason.max_edge();
             }
             // One at the centre alone has no sample: it is not seen, hole or not.
-            if draw.has_holes() && (fragment.mask == 0 || self.shader.is_hole(&pixel, number, counts)) {
+            if brief.holes && (fragment.mask == 0 || pixel.early(number).hole) {
                 continue;
             }
-            if piece.layer && draw.blend {
-                let colour = self.shader.colour(&pixel, number, counts);
+            if brief.layer && brief.blend {
+                let colour = pixel.colour(number, counts);
                 match colour >> 24 {
                     0 if draw.mode != BlendMode::Premultiplied => continue,
                     alpha if draw.hides(alpha) => {}
                     _ => {
                         reason = Reason::Layer;
-                        resolver.layers.push(Layer::new(space, fragment.mask, number, colour, draw.mode));
+                        self.layers.push(Layer::new(pixel.space, fragment.mask, number, colour, draw.mode));
                         continue;
                     }
                 }
             }
-            resolver.opaque(&pixel, number, draw, counts);
+            self.opaque(pixel, number, draw, counts);
         }
-        counts.active += 1;
-        let colour = resolver.finish(&pixel, &mut self.shader, counts);
-        (colour, reason)
+        self.finish(pixel, shares, counts);
+        reason
     }
-}
-
-/// Whether no sample is covered twice.
-#[inline(always)]
-fn disjoint(fragments: &[Fragment]) -> bool {
-    let (mut all, mut shared) = (0, 0);
-    for fragment in fragments {
-        shared |= all & fragment.mask;
-        all |= fragment.mask;
-    }
-    shared == 0
 }
 
 impl Reason {

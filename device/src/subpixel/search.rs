@@ -159,6 +159,7 @@ pub fn search_mask(grid: Grid, corner: Corner, band: u32) -> u64 {
 /// # Panics
 /// If the grid has no such sample. All that [`search`] returns are samples of its grid.
 #[must_use]
+#[inline(always)]
 pub fn offset_of(grid: Grid, sample: u32) -> Offset {
     OFFSETS[grid.index()][..grid.samples() as usize][sample as usize]
 }
@@ -201,6 +202,7 @@ pub fn search_by_bands(grid: Grid, mask: u64, corner: Corner) -> Option<Found> {
 /// The bands up to k hold a sample of the mask from the band on that is looked for: four halvings find it, with no
 /// branch that depends on the mask.
 #[must_use]
+#[inline(always)]
 pub fn search(grid: Grid, mask: u64, corner: Corner) -> Option<Found> {
     let swept = &SWEPT[grid.index()][corner as usize];
     if mask & swept[BANDS - 1] == 0 {
@@ -215,6 +217,7 @@ pub fn search(grid: Grid, mask: u64, corner: Corner) -> Option<Found> {
 }
 
 /// The first and the last sample of a mask that is not 0. A band has one sample a row at most, and bits go by rows.
+#[inline(always)]
 pub(super) fn ends(grid: Grid, hit: u64) -> [u32; 2] {
     let last = grid.samples() - 1;
     [last - hit.ilog2(), last - hit.trailing_zeros()]
@@ -242,6 +245,7 @@ impl Evaluated {
 
 /// The nearest or the farthest depth of a fragment as the search has it. `slopes` as in [`Corner::start`]; `depth` is
 /// the depth at a sample, called once for each end. `None` where the mask covers nothing.
+#[inline(always)]
 pub fn extreme_of(
     grid: Grid,
     mask: u64,

@@ -3,12 +3,69 @@
 //! One colour a fragment and pixel: at the pixel's centre, as the path has it, or where the polygon does not cover the
 //! centre at the sample nearest to it that it covers. So no colour is taken from beyond a polygon.
 //!
-//! Clocks: 1 an interpolated colour, of the shading unit, and what it goes through beyond that ([`crate::shading::pixel`]).
+//! Colours are asked for first, and found piece by piece, 16 at a time: the fragments of a piece share its planes, wherever
+//! they lie.
+//!
+//! Inputs from: [`super::pixel`]. Outputs to: [`super::finish`]. Clocks: 1 an interpolated colour, of the shading unit,
+//! and what it goes through beyond that ([`crate::shading::pixel`]).
 
 use super::grid::Grid;
-use super::pixel::{Fragment, Pixel};
-use super::{Counts, Setting};
-use crate::shading::plane::{ColourPlane, Interpolation};
+use super::lists::Fragment;
+use super::piece::Piece;
+use super::scene::ItemDraw;
+use super::{Counts, search};
+use crate::hidden::z_buffer::kernel::LANES;
+use crate::shading::plane::ColourPlane;
+use crate::shading::scattered::{self, Places, centre_of};
+use fearless_simd::{Level, Simd, dispatch};
+
+/// A place at which a piece is asked for something.
+#[derive(Clone, Copy, Debug)]
+struct Asked {
+    /// Twice the number of the piece, and 1 if the place is a pixel's centre.
+    key: u32,
+    /// u.
+    place: [i32; 2],
+}
+
+/// What is asked for at places, and the answers in the same order.
+#[derive(Debug, Default)]
+pub(super) struct Queue {
+    asked: Vec<Asked>,
+    /// Colours; or 1 where there is a hole, else 0.
+    pub(super) answers: Vec<u32>,
+    /// Numbers of what is asked, piece by piece.
+    order: Vec<u32>,
+    /// Where those of each key begin.
+    starts: Vec<u32>,
+}
+
+/// What a queue asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Question {
+    /// Colours.
+    Colour,
+    /// Whether there is a hole.
+    Hole,
+}
+
+/// What colours are found in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    pub(super) pieces: &'a [Piece],
+    pub(super) draws: &'a [ItemDraw],
+}
+
+/// Most rings that a grid has.
+const RINGS: usize = 9;
+
+/// Samples of a grid by their distance from the centre.
+#[derive(Debug, Default)]
+pub struct Rings {
+    grid: Option<Grid>,
+    /// The nearest first; 0 beyond the last.
+    masks: [u64; RINGS],
+}
 
 /// Colours of pieces, whose planes are made when they are first seen.
 #[derive(Debug, Default)]
@@ -16,97 +73,235 @@ pub struct Shader {
     /// Place of each piece's plane in `planes` plus 1; 0 is none yet.
     place: Vec<u32>,
     planes: Vec<ColourPlane>,
-    /// Samples by their distance from the centre, nearest first, of this grid.
-    rings: Vec<u64>,
-    grid: Option<Grid>,
+}
+
+impl Rings {
+    /// Makes ready for a grid.
+    pub(super) fn begin(&mut self, grid: Grid) {
+        if self.grid == Some(grid) {
+            return;
+        }
+        let distance = |sample: u32| {
+            let offset = grid.offset(sample);
+            offset.x * offset.x + offset.y * offset.y
+        };
+        let mut distances: Vec<i32> = (0..grid.samples()).map(distance).collect();
+        distances.sort_unstable();
+        distances.dedup();
+        *self = Rings { grid: Some(grid), masks: [0; RINGS] };
+        for (mask, of) in self.masks.iter_mut().zip(distances) {
+            *mask = (0..grid.samples()).filter(|&s| distance(s) == of).map(|s| grid.sample_bit(s)).sum();
+        }
+    }
+
+    /// Where a fragment of pixel (`x`, `y`) has its colour, in u; `None` is the pixel's centre. It covers a sample.
+    #[inline(always)]
+    fn place_of(&self, mask: u64, [x, y]: [i32; 2]) -> Option<[i32; 2]> {
+        // What covers the four samples about the centre covers the centre.
+        let inner = self.masks[0];
+        if mask & inner == inner {
+            return None;
+        }
+        let mut nearest = mask;
+        for ring in self.masks.iter().rev() {
+            let hit = ring & mask;
+            nearest = if hit == 0 { nearest } else { hit };
+        }
+        let grid = self.grid?;
+        let offset = search::offset_of(grid, grid.samples() - 1 - nearest.ilog2());
+        let [cx, cy] = centre_of(x, y);
+        Some([cx + 16 * offset.x, cy + 16 * offset.y])
+    }
+}
+
+impl Source<'_> {
+    fn draw(&self, piece: u32) -> &ItemDraw {
+        &self.draws[self.pieces[piece as usize].draw as usize]
+    }
+}
+
+impl Queue {
+    /// Forgets everything.
+    pub(super) fn clear(&mut self) {
+        self.asked.clear();
+        self.answers.clear();
+    }
+
+    /// Asks for a fragment's place in pixel (`x`, `y`); returns the number of the answer.
+    #[inline(always)]
+    pub(super) fn ask(&mut self, rings: &Rings, fragment: &Fragment, [x, y]: [i32; 2]) -> u32 {
+        let (key, place) = match rings.place_of(fragment.mask, [x, y]) {
+            None => (2 * fragment.piece + 1, centre_of(x, y)),
+            Some(place) => (2 * fragment.piece, place),
+        };
+        self.asked.push(Asked { key, place });
+        self.asked.len() as u32 - 1
+    }
+
+    /// Puts the numbers of what is asked in order of their pieces.
+    fn sort(&mut self, pieces: usize) {
+        self.starts.clear();
+        self.starts.resize(2 * pieces + 1, 0);
+        for asked in &self.asked {
+            self.starts[asked.key as usize + 1] += 1;
+        }
+        for key in 1..self.starts.len() {
+            self.starts[key] += self.starts[key - 1];
+        }
+        self.order.resize(self.asked.len(), 0);
+        for (number, asked) in (0..).zip(&self.asked) {
+            let start = &mut self.starts[asked.key as usize];
+            self.order[*start as usize] = number;
+            *start += 1;
+        }
+    }
+
+    /// Answers everything; the events of that go to `counts`.
+    pub(super) fn answer(
+        &mut self,
+        level: Option<Level>,
+        question: Question,
+        shader: &mut Shader,
+        source: Source<'_>,
+        mut counts: Option<&mut Counts>,
+    ) {
+        self.answers.resize(self.asked.len(), 0);
+        self.sort(source.pieces.len());
+        let order = std::mem::take(&mut self.order);
+        for group in order.chunk_by(|&a, &b| self.asked[a as usize].key == self.asked[b as usize].key) {
+            let key = self.asked[group[0] as usize].key;
+            let (piece, at_centre) = (key / 2, key % 2 == 1);
+            let mut found = 0;
+            for numbers in group.chunks(LANES) {
+                let mut at: Places = [[0; LANES]; 2];
+                for lane in 0..LANES {
+                    // Lanes beyond the last repeat the first.
+                    let number = numbers.get(lane).unwrap_or(&numbers[0]);
+                    let [x, y] = self.asked[*number as usize].place;
+                    (at[0][lane], at[1][lane]) = (x, y);
+                }
+                let wanted = u16::MAX >> (LANES - numbers.len());
+                let answers = match question {
+                    Question::Colour => shader.colours(level, source, piece, at_centre, &at, wanted),
+                    Question::Hole => shader.holes(level, source, piece, &at, wanted),
+                };
+                for (number, answer) in numbers.iter().zip(answers) {
+                    self.answers[*number as usize] = answer;
+                    found += u64::from(answer);
+                }
+            }
+            let Some(counts) = &mut counts else {
+                continue;
+            };
+            match (question, &source.draw(piece).shading) {
+                (Question::Colour, _) => counts.shade(source.draw(piece), group.len() as u64),
+                (Question::Hole, None) => {}
+                (Question::Hole, Some(shading)) => {
+                    counts.shading = counts.shading.plus(shading.pixel.looked_up(group.len() as u64, found));
+                }
+            }
+        }
+        self.order = order;
+    }
 }
 
 impl Shader {
     /// Makes ready for a band of so many pieces.
-    pub fn begin(&mut self, setting: &Setting, pieces: usize) {
+    pub(super) fn begin(&mut self, pieces: usize) {
         self.planes.clear();
         self.place.clear();
         self.place.resize(pieces, 0);
-        if self.grid != Some(setting.grid) {
-            (self.grid, self.rings) = (Some(setting.grid), rings(setting.grid));
-        }
     }
 
-    /// Colour of a fragment: at the pixel's centre, or, where the piece does not cover that, at the sample nearest to
-    /// it that it does.
+    /// Makes sure that a piece has its plane; returns the plane's place.
     #[inline(always)]
-    pub(super) fn colour(&mut self, pixel: &Pixel<'_>, fragment: usize, counts: &mut Counts) -> u32 {
-        let (piece, draw) = (pixel.piece(fragment), pixel.draw(fragment));
-        if draw.interpolation == Interpolation::Flat && draw.shading.is_none() {
-            return piece.source.flat();
-        }
-        counts.shaded += 1;
-        let Some(shading) = &draw.shading else {
-            return match self.place_of(pixel, fragment) {
-                None => self.plane(pixel, fragment).colour(pixel.place[0], pixel.place[1]),
-                Some(place) => piece.source.colour_at(place, draw.interpolation),
-            };
-        };
-        counts.shading = counts.shading.plus(shading.pixel.cost());
-        match (self.place_of(pixel, fragment), self.plane(pixel, fragment)) {
-            (Some(place), ColourPlane::Shaded(both)) => {
-                both.1.colour(piece.source.colour_at(place, draw.interpolation), place)
-            }
-            (_, plane) => plane.colour(pixel.place[0], pixel.place[1]),
-        }
-    }
-
-    /// Whether a fragment is a hole of its texture, where its colour is taken.
-    pub(super) fn is_hole(&mut self, pixel: &Pixel<'_>, fragment: usize, counts: &mut Counts) -> bool {
-        let [x, y] = pixel.place;
-        let place = self.place_of(pixel, fragment).unwrap_or([x * 256 + 128, y * 256 + 128]);
-        let hole = match self.plane(pixel, fragment) {
-            ColourPlane::Shaded(both) => both.1.is_hole(place),
-            _ => false,
-        };
-        if let Some(shading) = &pixel.draw(fragment).shading {
-            counts.shading = counts.shading.plus(shading.pixel.looked_up(1, u64::from(hole)));
-        }
-        hole
-    }
-
-    /// Where a fragment's colour is taken, in u; `None` is the pixel's centre.
-    #[inline(always)]
-    fn place_of(&self, pixel: &Pixel<'_>, fragment: usize) -> Option<[i32; 2]> {
-        let Fragment { mask, .. } = pixel.fragments[fragment];
-        // What covers the four samples about the centre covers the centre.
-        let inner = self.rings[0];
-        if mask & inner == inner {
-            return None;
-        }
-        let nearest = self.rings.iter().map(|ring| ring & mask).find(|&hit| hit != 0).unwrap_or(mask);
-        let grid = pixel.setting.grid;
-        let [u, v] = grid.position(grid.samples() - 1 - nearest.ilog2());
-        let [x, y] = pixel.place;
-        Some([x * 256 + u, y * 256 + v])
-    }
-
-    /// The plane of a fragment's piece.
-    #[inline(always)]
-    fn plane(&mut self, pixel: &Pixel<'_>, fragment: usize) -> &ColourPlane {
-        let place = &mut self.place[pixel.fragments[fragment].piece as usize];
+    fn plane(&mut self, source: Source<'_>, piece: u32) -> &ColourPlane {
+        let place = &mut self.place[piece as usize];
         if *place == 0 {
-            self.planes.push(pixel.piece(fragment).colours(&pixel.draw(fragment).shade()));
+            self.planes.push(source.pieces[piece as usize].colours(&source.draw(piece).shade()));
             *place = self.planes.len() as u32;
         }
         &self.planes[*place as usize - 1]
     }
-}
 
-/// The samples of a grid by their distance from the centre, nearest first.
-fn rings(grid: Grid) -> Vec<u64> {
-    let distance = |sample: u32| {
-        let offset = grid.offset(sample);
-        offset.x * offset.x + offset.y * offset.y
-    };
-    let mut distances: Vec<i32> = (0..grid.samples()).map(distance).collect();
-    distances.sort_unstable();
-    distances.dedup();
-    let ring = |of: &i32| (0..grid.samples()).filter(|&s| distance(s) == *of).map(|s| grid.sample_bit(s)).sum();
-    distances.iter().map(ring).collect()
+    /// Colour of a piece at a place, a pixel's centre or another.
+    fn colour_at(&mut self, source: Source<'_>, piece: u32, at_centre: bool, place: [i32; 2]) -> u32 {
+        let interpolation = source.draw(piece).interpolation;
+        let shaded = source.draw(piece).shading.is_some();
+        let colours = &source.pieces[piece as usize].source;
+        if at_centre {
+            return self.plane(source, piece).colour(place[0] >> 8, place[1] >> 8);
+        }
+        let colour = colours.colour_at(place, interpolation);
+        match shaded {
+            false => colour,
+            true => match self.plane(source, piece) {
+                ColourPlane::Shaded(both) => both.1.colour(colour, place),
+                ColourPlane::Interpolated(_) => colour,
+            },
+        }
+    }
+
+    /// Colours of a piece at 16 places, all of them centres or none; those not wanted mean nothing.
+    fn colours(
+        &mut self,
+        level: Option<Level>,
+        source: Source<'_>,
+        piece: u32,
+        at_centre: bool,
+        at: &Places,
+        wanted: u16,
+    ) -> [u32; LANES] {
+        match level {
+            Some(level) => dispatch!(level, simd => self.lanes(simd, source, piece, at_centre, at, wanted)),
+            None => std::array::from_fn(|lane| self.colour_at(source, piece, at_centre, [at[0][lane], at[1][lane]])),
+        }
+    }
+
+    #[inline(always)]
+    fn lanes<S: Simd>(
+        &mut self,
+        simd: S,
+        source: Source<'_>,
+        piece: u32,
+        at_centre: bool,
+        at: &Places,
+        wanted: u16,
+    ) -> [u32; LANES] {
+        let draw = source.draw(piece);
+        let of_places = || scattered::at_places(simd, &source.pieces[piece as usize].source, at, draw.interpolation);
+        if !at_centre && draw.shading.is_none() {
+            return of_places();
+        }
+        match self.plane(source, piece) {
+            ColourPlane::Interpolated(_) if !at_centre => of_places(),
+            ColourPlane::Interpolated(plane) => scattered::at_centres(simd, plane, at),
+            ColourPlane::Shaded(both) => {
+                let colours = if at_centre { scattered::at_centres(simd, &both.0, at) } else { of_places() };
+                both.1.scattered(simd, &colours, at, wanted)
+            }
+        }
+    }
+
+    /// Which of 16 places are holes of a piece's texture: 1, else 0.
+    fn holes(
+        &mut self,
+        level: Option<Level>,
+        source: Source<'_>,
+        piece: u32,
+        at: &Places,
+        wanted: u16,
+    ) -> [u32; LANES] {
+        let ColourPlane::Shaded(both) = self.plane(source, piece) else {
+            return [0; LANES];
+        };
+        let holes = match level {
+            Some(level) => dispatch!(level, simd => both.1.scattered_holes(simd, at, wanted)),
+            None => {
+                let hole = |lane: usize| u16::from(both.1.is_hole([at[0][lane], at[1][lane]])) << lane;
+                (0..LANES).map(hole).sum()
+            }
+        };
+        std::array::from_fn(|lane| u32::from(holes >> lane & 1))
+    }
 }

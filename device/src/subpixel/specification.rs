@@ -4,7 +4,6 @@
 
 use super::band::{Input, Resolved, Work};
 use super::bands::Entry;
-use super::gamma::Space;
 use super::left::covers_centre;
 use super::lists::Fragment;
 use super::piece::{Cover, Piece};
@@ -25,17 +24,20 @@ pub fn draw(work: &mut Work, input: &Input<'_>, out: &mut Vec<Resolved>, counts:
         work.pieces.push(piece);
         work.covers.push((cover, input.area(item, [[0, input.top], [i32::MAX, beyond]])));
     }
-    work.shader.begin(input.setting, work.pieces.len());
-    let space = Space::new(input.setting.resolve);
+    let mut list = work.open_pixels(input);
     for line in 0..input.lines {
         for x in 0..input.setting.size[0] as usize {
-            let mut list = std::mem::take(&mut work.list);
-            if pixel(work, input, &mut list, x, line) {
-                work.pixel(input, space, &mut list, [x, line], out, counts);
+            let first = list.len();
+            let mut left = Vec::new();
+            if pixel(work, input, &mut left, x, line) {
+                let apart = disjoint(&left);
+                list.append(&mut left);
+                work.take_up(input, &mut list, first, [x, line], apart, counts);
             }
-            work.list = list;
         }
     }
+    work.pixels.fragments = list;
+    work.close_pixels(None, input, out, counts);
 }
 
 /// Samples of a pixel that a piece covers.
@@ -69,7 +71,6 @@ fn centre_only(input: &Input<'_>, piece: &Piece, (cover, area): &(Cover, [[i32; 
 fn pixel(work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, x: usize, line: usize) -> bool {
     let (column, y) = (x as i32, input.top + line as i32);
     let full = input.setting.grid.full();
-    list.clear();
     for ((piece, cover), number) in work.pieces.iter().zip(&work.covers).zip(0..) {
         let mask = mask(input, piece, cover, column, y);
         if mask != 0 || centre_only(input, piece, cover, column, y) {
@@ -97,4 +98,10 @@ fn pixel(work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, x: usize, lin
     let hides = |fragment: &Fragment| fragment.far <= limit;
     let centre = |fragment: &Fragment| covers_centre(input, piece(fragment), fragment.mask, [column, y]);
     left > 1 && !(one && base > limit && list.iter().any(|fragment| hides(fragment) && centre(fragment)))
+}
+
+/// Whether no sample is covered twice.
+fn disjoint(fragments: &[Fragment]) -> bool {
+    let covered: u32 = fragments.iter().map(|fragment| fragment.mask.count_ones()).sum();
+    fragments.iter().fold(0, |all, fragment| all | fragment.mask).count_ones() == covered
 }
