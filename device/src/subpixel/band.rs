@@ -12,7 +12,7 @@
 use super::bands::Entry;
 use super::brief::Brief;
 use super::finish::Pixels;
-use super::hide::{OPEN, Span, UNTOUCHED};
+use super::hide::{Depths, OPEN, Span, UNTOUCHED};
 use super::left;
 use super::lists::{Fragment, Lists};
 use super::map::Reason;
@@ -46,12 +46,8 @@ pub struct Work {
     pub(super) owners: Vec<u32>,
     /// A bit a pixel that may be active; rows of [`Input::words`] words.
     pub(super) active: Vec<u64>,
-    /// In open chunks the farthest depth that may be seen.
-    pub(super) far: Vec<i32>,
-    /// The least nearest depth of what covers the whole pixel.
-    pub(super) near: Vec<i32>,
-    /// The second least.
-    pub(super) second: Vec<i32>,
+    /// For each such chunk, where it is open, the depths of its pixels.
+    pub(super) depths: Vec<Depths>,
     /// Whole covers of a pixel, where no rule says which hide which.
     pub(super) stacked: Vec<u8>,
     /// Items of the band from the nearest to the farthest, so far as that may save time.
@@ -253,18 +249,16 @@ impl Work {
         self.lists.begin(input);
         self.active.clear();
         self.active.resize(input.words() * input.lines, 0);
-        let pixels = input.pitch() * input.lines;
-        for depths in [&mut self.far, &mut self.near, &mut self.second] {
-            depths.resize(pixels.max(depths.len()), 0);
-        }
+        let chunks = input.chunks() * input.lines;
+        self.depths.resize(chunks.max(self.depths.len()), Depths::ALL);
         // Without a rule nothing hides anything.
         let ordered = input.setting.rule == Rule::InOrder;
         self.columns.clear();
         self.columns.resize(input.chunks(), if ordered { OPEN } else { UNTOUCHED });
-        self.owners.resize(input.chunks() * input.lines, OPEN);
+        self.owners.resize(chunks, OPEN);
         if ordered {
             self.owners.fill(OPEN);
-            self.far[..pixels].fill(i32::MAX);
+            self.depths[..chunks].fill(Depths::ALL);
         }
     }
 
@@ -335,9 +329,10 @@ impl Work {
                     let x = word * 64 + left.trailing_zeros() as usize;
                     left &= left - 1;
                     let bounds = piece.bounds(x as i32, y);
-                    if bounds[0] <= self.far[line * pitch + x] {
+                    let at = line * pitch + x;
+                    if bounds[0] <= self.depths[at / LANES].far[at % LANES] {
                         *active |= 1 << (x % 64);
-                        self.lists.put(line * pitch + x, Fragment::new(full, span.piece, bounds));
+                        self.lists.put(at, Fragment::new(full, span.piece, bounds));
                     }
                 }
             }

@@ -9,9 +9,8 @@
 //! Inputs from: [`super::cover`]. Outputs to: [`super::band`].
 
 use super::band::{Input, Work};
-use super::piece::Piece;
-use crate::geometry::plane::below;
-use crate::hidden::z_buffer::kernel::{LANE, LANES, Steps};
+use super::row::Bounds;
+use crate::hidden::z_buffer::kernel::{LANE, LANES};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x16, u32x16};
 
@@ -29,6 +28,23 @@ pub(super) struct Span {
 pub(super) const UNTOUCHED: u32 = u32::MAX;
 /// A chunk whose depths are worked out.
 pub(super) const OPEN: u32 = u32::MAX - 1;
+
+/// Depths of the pixels of an open chunk.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Depths {
+    /// The farthest that may be seen.
+    pub(super) far: [i32; LANES],
+    /// The least nearest depth of what covers the whole pixel.
+    pub(super) near: [i32; LANES],
+    /// The second least.
+    pub(super) second: [i32; LANES],
+}
+
+impl Depths {
+    /// Pixels in which everything is seen.
+    pub(super) const ALL: Depths = Depths { far: [i32::MAX; LANES], near: [i32::MAX; LANES], second: [i32::MAX; LANES] };
+}
 
 /// The farthest depth that is seen beyond the right edge of the target: nothing is.
 const BEYOND: i32 = i32::MIN;
@@ -49,7 +65,7 @@ impl Work {
         let decided = |&owner: &u32| match owner {
             UNTOUCHED => true,
             OPEN => false,
-            owner => self.pieces[owner as usize].plane.maximum < piece.plane.minimum,
+            owner => self.is_nearer(owner, piece.plane.minimum),
         };
         if !self.columns[first..beyond].iter().all(decided) {
             return [0; 2];
@@ -64,7 +80,7 @@ impl Work {
 
     /// Gives the chunks below one another an owner each.
     #[inline(always)]
-    fn split(&mut self, input: &Input<'_>, chunk: usize) {
+    pub(super) fn split(&mut self, input: &Input<'_>, chunk: usize) {
         let owner = std::mem::replace(&mut self.columns[chunk], OPEN);
         if owner == OPEN {
             return;
@@ -88,28 +104,30 @@ impl Work {
             return;
         }
         let owner = std::mem::replace(owner, OPEN);
-        let (x, y) = (chunk * LANES, input.top + line as i32);
+        let x = chunk * LANES;
         let columns = (input.setting.size[0] as usize - x).min(LANES);
-        let place = line * input.pitch() + x;
-        let far = &mut self.far[place..place + LANES];
-        let near = &mut self.near[place..place + LANES];
+        let Depths { far, near, second } = &mut self.depths[line * input.chunks() + chunk];
         if owner == UNTOUCHED {
             match input.base_depth() {
                 Some(base) => far.fill(base),
                 None => far[..columns].iter_mut().zip(x..).for_each(|(far, x)| *far = input.base_at(x, line)),
             }
-            near.copy_from_slice(far);
+            *near = *far;
         } else {
-            let piece = &self.pieces[owner as usize];
-            let values = piece.row_values(x as i32, y);
-            let bounds =
-                bounds(simd, input, piece, &Steps::new(simd, piece.row_step()), values, [x, x + columns, y as usize]);
-            bounds.0.store_slice(near);
-            bounds.1.store_slice(far);
+            let bounds = Bounds::new(simd, input, &self.pieces[owner as usize]);
+            let depths = bounds.of(simd, bounds.value(x as i32, input.top + line as i32));
+            depths[0].store_slice(near);
+            depths[1].store_slice(far);
         }
         far[columns..].fill(BEYOND);
         near[columns..].fill(BEYOND);
-        self.second[place..place + LANES].fill(i32::MAX);
+        second.fill(i32::MAX);
+    }
+
+    /// Whether all depths of a piece are nearer than `nearest`.
+    #[inline(always)]
+    pub(super) fn is_nearer(&self, piece: u32, nearest: i32) -> bool {
+        self.pieces[piece as usize].plane.maximum < nearest
     }
 
     /// Whether everything in `area` that is not nearer than `nearest` is hidden.
@@ -123,19 +141,17 @@ impl Work {
     ) -> bool {
         let lane = u32x16::from_slice(simd, &LANE);
         let (left, right) = (left as usize, right as usize);
-        let nearer = |owner: u32| self.pieces[owner as usize].plane.maximum < nearest;
         for chunk in left / LANES..(right - 1) / LANES + 1 {
             match self.columns[chunk] {
                 UNTOUCHED => return false,
                 OPEN => {}
-                owner if nearer(owner) => continue,
+                owner if self.is_nearer(owner, nearest) => continue,
                 _ => return false,
             }
             for line in (first - input.top) as usize..(beyond - input.top) as usize {
                 match self.owners[line * input.chunks() + chunk] {
                     OPEN => {
-                        let place = line * input.pitch() + chunk * LANES;
-                        let far = i32x16::from_slice(simd, &self.far[place..place + LANES]);
+                        let far = i32x16::from_slice(simd, &self.depths[line * input.chunks() + chunk].far);
                         let x = chunk * LANES;
                         let inside = (lane - (left as u32).wrapping_sub(x as u32)).simd_lt((right - left) as u32);
                         if (inside & far.simd_ge(nearest)).to_bitmask() != 0 {
@@ -143,72 +159,12 @@ impl Work {
                         }
                     }
                     UNTOUCHED => return false,
-                    owner if nearer(owner) => {}
+                    owner if self.is_nearer(owner, nearest) => {}
                     _ => return false,
                 }
             }
         }
         true
-    }
-
-    /// What a span of an opaque piece, the last one set up, hides; of a layer's nothing. False if it is hidden itself.
-    #[inline(always)]
-    pub(super) fn hide<S: Simd>(&mut self, simd: S, input: &Input<'_>, steps: &Steps<S>, span: &Span) -> bool {
-        let piece = &self.pieces[span.piece as usize];
-        if piece.layer {
-            return true;
-        }
-        let undecided = input.undecided(piece);
-        let width = input.setting.size[0] as usize;
-        let (line, from, to) = (usize::from(span.line), usize::from(span.columns[0]), usize::from(span.columns[1]));
-        let y = input.top + i32::from(span.line);
-        let lane = u32x16::from_slice(simd, &LANE);
-        let minimum = piece.plane.minimum;
-        let step = piece.row_step().wrapping_mul(LANES as i64);
-        let mut values = piece.row_values((from / LANES * LANES) as i32, y);
-        let mut any = false;
-        for chunk in from / LANES..(to - 1) / LANES + 1 {
-            let x = chunk * LANES;
-            let [value, value_far] = values;
-            values = [value.wrapping_add(step), value_far.wrapping_add(step)];
-            match self.columns[chunk] {
-                OPEN => {}
-                owner if owner != UNTOUCHED && self.pieces[owner as usize].plane.maximum < minimum => continue,
-                _ => self.split(input, chunk),
-            }
-            let owner = &mut self.owners[line * input.chunks() + chunk];
-            if *owner != OPEN {
-                let all = from <= x && to >= (x + LANES).min(width);
-                if *owner == UNTOUCHED && all && !undecided {
-                    *owner = span.piece;
-                    any = true;
-                    continue;
-                }
-                if *owner != UNTOUCHED && self.pieces[*owner as usize].plane.maximum < minimum {
-                    continue;
-                }
-                self.open(simd, input, line, chunk);
-            }
-            let piece = &self.pieces[span.piece as usize];
-            let place = line * input.pitch() + x;
-            let inside = (lane - (from as u32).wrapping_sub(x as u32)).simd_lt((to - from) as u32);
-            let columns = [from.max(x), to.min(x + LANES)];
-            let (nearest, farthest) =
-                bounds(simd, input, piece, steps, [value, value_far], [columns[0], columns[1], y as usize]);
-            let far = i32x16::from_slice(simd, &self.far[place..place + LANES]);
-            // What is hidden already changes nothing.
-            let seen = inside & nearest.simd_le(far);
-            if seen.to_bitmask() == 0 {
-                continue;
-            }
-            any = true;
-            let near = i32x16::from_slice(simd, &self.near[place..place + LANES]);
-            let second = i32x16::from_slice(simd, &self.second[place..place + LANES]);
-            seen.select(far.min(farthest), far).store_slice(&mut self.far[place..place + LANES]);
-            seen.select(second.min(near.max(nearest)), second).store_slice(&mut self.second[place..place + LANES]);
-            seen.select(near.min(nearest), near).store_slice(&mut self.near[place..place + LANES]);
-        }
-        any
     }
 
     /// Pixels where two whole covers may cross become active.
@@ -217,12 +173,12 @@ impl Work {
         let words = input.words();
         for chunk in (0..input.chunks()).filter(|&chunk| self.columns[chunk] == OPEN) {
             for line in 0..input.lines {
-                if self.owners[line * input.chunks() + chunk] != OPEN {
+                let at = line * input.chunks() + chunk;
+                if self.owners[at] != OPEN {
                     continue;
                 }
-                let place = line * input.pitch() + chunk * LANES;
-                let second = i32x16::from_slice(simd, &self.second[place..place + LANES]);
-                let far = i32x16::from_slice(simd, &self.far[place..place + LANES]);
+                let second = i32x16::from_slice(simd, &self.depths[at].second);
+                let far = i32x16::from_slice(simd, &self.depths[at].far);
                 let crossed = second.simd_le(far).to_bitmask();
                 self.active[line * words + chunk / 4] |= crossed << (chunk % 4 * LANES);
             }
@@ -248,27 +204,4 @@ impl Work {
             }
         }
     }
-}
-
-/// Bounds of the depths of a chunk whose lane 0 has `values`; columns `from..to` of row `y` of it matter.
-#[inline(always)]
-fn bounds<S: Simd>(
-    simd: S,
-    input: &Input<'_>,
-    piece: &Piece,
-    steps: &Steps<S>,
-    values: [i64; 2],
-    [from, to, y]: [usize; 3],
-) -> (i32x16<S>, i32x16<S>) {
-    let (minimum, maximum) = (piece.plane.minimum, piece.plane.maximum);
-    if below(input.setting.format) == 32 {
-        let [near, far] = values.map(|value| steps.upper(simd, value).max(minimum).min(maximum));
-        return (near, far);
-    }
-    // Depths of 31 bits do not fit in two halves.
-    let mut bounds = [[0; LANES]; 2];
-    for column in from..to {
-        [bounds[0][column % LANES], bounds[1][column % LANES]] = piece.bounds(column as i32, y as i32);
-    }
-    (i32x16::from_slice(simd, &bounds[0]), i32x16::from_slice(simd, &bounds[1]))
 }

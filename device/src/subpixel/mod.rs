@@ -15,7 +15,9 @@
 //! | [`piece`] | an item set up for a band of lines: edges, depth bounds, depths at samples |
 //! | `bands` | items sorted into bands of lines |
 //! | [`band`] | a band from items to resolved pixels, from the nearest item to the farthest |
-//! | `cover` | what an item covers on its lines: masks, spans |
+//! | `cover` | what an item covers, row by row |
+//! | `walk` | its edges on rows of samples: which pixels it meets, masks |
+//! | `row` | one row of it: what is seen becomes fragments and spans |
 //! | `hide` | what is hidden already, and by what covers whole pixels |
 //! | `lists` | fragments by pixel, in bounded memory |
 //! | `left` | what is left of them, and which pixels are active |
@@ -56,6 +58,7 @@ pub mod map;
 mod parts;
 pub mod piece;
 pub mod pixel;
+mod row;
 pub mod scene;
 pub mod search;
 pub mod search_clocked;
@@ -64,6 +67,7 @@ pub mod specification;
 #[cfg(test)]
 mod tests;
 pub mod unit;
+mod walk;
 
 use crate::probe::account::{Account, Clocks};
 use crate::shading::pixel::ShadingCounts;

@@ -213,23 +213,16 @@ impl Piece {
         [self.plane.stored(value - self.reach, self.below), self.plane.stored(value + self.reach, self.below)]
     }
 
-    /// Values that bound the depths of pixel (`x`, `y`), the same on the whole row but for [`Piece::row_step`] a pixel:
-    /// what [`Piece::bounds`] shifts and clamps.
+    /// Values that bound the depths of pixel (0, 0), modulo 2^64: what [`Piece::bounds`] shifts and clamps; and their
+    /// change for one pixel to the right and down.
     #[must_use]
     #[inline(always)]
-    pub fn row_values(&self, x: i32, y: i32) -> [i64; 2] {
+    pub fn values(&self) -> ([i64; 2], [i64; 2]) {
         if let Slope::Wild(_) = self.slope {
-            return [self.plane.minimum, self.plane.maximum].map(|z| i64::from(z) << self.below);
+            return ([self.plane.minimum, self.plane.maximum].map(|z| i64::from(z) << self.below), [0; 2]);
         }
-        let value = self.plane.value(x, y);
-        [value.wrapping_sub(self.reach), value.wrapping_add(self.reach)]
-    }
-
-    /// Change of [`Piece::row_values`] a pixel.
-    #[must_use]
-    #[inline(always)]
-    pub fn row_step(&self) -> i64 {
-        if matches!(self.slope, Slope::Wild(_)) { 0 } else { self.plane.dx }
+        let value = self.plane.value(0, 0);
+        ([value.wrapping_sub(self.reach), value.wrapping_add(self.reach)], [self.plane.dx, self.plane.dy])
     }
 
     /// All samples of a pixel have one depth.

@@ -56,6 +56,18 @@ impl<S: Simd> Steps<S> {
         carried.select(high + 1, high)
     }
 
+    /// Upper halves of `value` + k steps, and of the same and `range` more.
+    #[inline(always)]
+    pub(crate) fn range(&self, simd: S, value: i64, range: i64) -> [i32x16<S>; 2] {
+        let base = u32x16::splat(simd, value as u32);
+        let low = base + self.low;
+        let high = self.high + i32x16::splat(simd, (value >> 32) as i32);
+        let near = low.simd_lt(base).select(high + 1, high);
+        let more = u32x16::splat(simd, range as u32);
+        let high = near + i32x16::splat(simd, (range >> 32) as i32);
+        [near, (low + more).simd_lt(more).select(high + 1, high)]
+    }
+
     /// Columns of an edge on [`LANES`] rows, counted from column `x`: the integer part of a walk lies in
     /// the upper half of its 64 bits.
     #[inline(always)]
