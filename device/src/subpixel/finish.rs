@@ -193,6 +193,7 @@ impl Work {
                 let range = from as usize..to as usize;
                 let pixel = Pixel {
                     setting,
+                    level,
                     space,
                     source,
                     briefs: &self.briefs,

@@ -42,12 +42,8 @@ struct Link {
 }
 
 /// The end of all lists.
-const END: Link = Link {
-    fragment: Fragment { mask: 0, piece: 0, near: 0, far: 0, next: 0 },
-    union: 0,
-    far: i32::MIN,
-    count: 0,
-};
+const END: Link =
+    Link { fragment: Fragment { mask: 0, piece: 0, near: 0, far: 0, next: 0 }, union: 0, far: i32::MIN, count: 0 };
 
 /// Fragments of a thread at most, but for those of one pixel: 10 MiB.
 const MOST: usize = 1 << 18;
@@ -117,14 +113,13 @@ impl Lists {
         self.links.push(link);
     }
 
-    /// Moves the fragments of a pixel to the end of `list`.
+    /// Moves the fragments of a pixel to the end of `list`, those found last first.
     #[inline(always)]
     pub(super) fn take(&mut self, at: usize, list: &mut Vec<Fragment>) {
         let mut next = std::mem::take(&mut self.places[at]) as usize;
-        let first = list.len();
-        list.resize(first + self.links[next].count as usize, END.fragment);
-        for fragment in list[first..].iter_mut().rev() {
-            *fragment = self.links[next].fragment;
+        for _ in 0..self.links[next].count {
+            let fragment = self.links[next].fragment;
+            list.push(fragment);
             next = fragment.next as usize;
         }
     }

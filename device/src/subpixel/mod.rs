@@ -46,6 +46,7 @@
 pub mod band;
 mod bands;
 mod brief;
+mod compare;
 mod cover;
 mod finish;
 pub mod gamma;

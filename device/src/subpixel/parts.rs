@@ -11,7 +11,7 @@ use super::piece::{Piece, Sampled};
 use super::pixel::{Pixel, samples};
 use super::scene::{ItemDraw, Kind, Rule};
 use super::search::{self, DepthRange, Extreme};
-use super::{Counts, Setting, search_clocked};
+use super::{Counts, Setting, compare, search_clocked};
 use crate::hidden::z_buffer::DepthTest;
 use zga_abi::format::SubpixelDepth;
 
@@ -179,6 +179,9 @@ impl Resolver {
             Depths::Fragment(fragment) => pixel.sampled(fragment),
         };
         if let (Some(new), Some(stored)) = (pixel.sampled(new), sampled) {
+            if let Some(level) = pixel.level {
+                return compare::passing(level, pixel.setting.grid, test, &new, &stored) & shared;
+            }
             let passes = |sample: &u32| {
                 let offset = search::offset_of(pixel.setting.grid, *sample);
                 test.passes(new.depth(offset), stored.depth(offset))

@@ -50,12 +50,13 @@ enum Slope {
 #[derive(Clone, Copy, Debug)]
 pub struct Sampled {
     /// Value at the centre.
-    value: i64,
+    pub(super) value: i64,
     /// Change for 1/16 pixel to the right and down.
-    gradient: [i64; 2],
+    pub(super) gradient: [i64; 2],
     /// Bits of a value below its point.
-    below: u32,
-    limits: [i32; 2],
+    pub(super) below: u32,
+    /// Least and greatest depth.
+    pub(super) limits: [i32; 2],
 }
 
 impl Sampled {

@@ -33,11 +33,14 @@ use super::piece::{Piece, Sampled};
 use super::scene::ItemDraw;
 use super::shader::{Rings, Source};
 use super::{Counts, Setting, search};
+use fearless_simd::Level;
 use zga_abi::format::BlendMode;
 
 /// A pixel, and all that its fragments are looked up in.
 pub(super) struct Pixel<'a> {
     pub(super) setting: &'a Setting,
+    /// Lanes, if not by the specification.
+    pub(super) level: Option<Level>,
     pub(super) space: Space,
     pub(super) source: Source<'a>,
     pub(super) briefs: &'a [Brief],
