@@ -56,7 +56,9 @@ impl<S: Simd> Bounds<S> {
     #[inline(always)]
     pub(super) fn of(&self, simd: S, value: i64) -> [i32x16<S>; 2] {
         if self.below == 32 {
-            return self.steps.range(simd, value, self.range).map(|depths| depths.max(self.minimum).min(self.maximum));
+            let [near, far] = self.steps.range(simd, value, self.range);
+            let (minimum, maximum) = (self.minimum, self.maximum);
+            return [near.max(minimum).min(maximum), far.max(minimum).min(maximum)];
         }
         // Depths of 31 bits do not fit in two halves.
         let (minimum, maximum) = (i64::from(self.minimum), i64::from(self.maximum));
@@ -68,7 +70,7 @@ impl<S: Simd> Bounds<S> {
             }
             value = value.wrapping_add(self.gradient[0]);
         }
-        bounds.map(|bound| i32x16::from_slice(simd, &bound))
+        [i32x16::from_slice(simd, &bounds[0]), i32x16::from_slice(simd, &bounds[1])]
     }
 }
 
