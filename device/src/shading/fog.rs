@@ -11,6 +11,7 @@
 //! Error: the rounded share is that of exact arithmetic but where the exact one lies within 2^-12 of the middle between
 //! two. It never grows with distance (nor falls, for a depth cue with a negative scale).
 
+use super::levels::whole;
 use super::math::exp2;
 use std::f32::consts::LOG2_E;
 use zga_abi::format::FogFunction;
@@ -85,7 +86,7 @@ impl FogMixer {
         };
         let share = if share > 0.0 { share } else { 0.0 };
         let share = if share < 1.0 { share } else { 1.0 };
-        mix(fog.colour, colour, (255.0 * share + 0.5) as i32 as u32)
+        mix(fog.colour, colour, whole(255.0 * share + 0.5))
     }
 }
 

@@ -24,6 +24,7 @@
 //! | place at the eye, local viewer | highlights as from a viewer in the light's own direction; normals are not turned |
 //! | light exactly behind, L = -V | H is zero: specular only where the shininess is 0 |
 
+use super::levels::whole;
 use super::math::{Reach, Vector, coordinate, dot, pow, reach};
 use zga_abi::format::LightType;
 use zga_abi::light::LightRecord;
@@ -312,7 +313,7 @@ impl Lights {
         for (k, surface) in levels(colour).into_iter().enumerate() {
             let level = (self.emission[k] + surface * (self.ambient[k] + sum.share[k])) + sum.gloss[k];
             let level = if level < 255.0 { level } else { 255.0 };
-            lit |= ((level + 0.5) as i32 as u32) << (8 * k as u32);
+            lit |= whole(level + 0.5) << (8 * k as u32);
         }
         lit
     }

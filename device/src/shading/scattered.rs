@@ -49,7 +49,7 @@ pub fn at_places<S: Simd>(simd: S, source: &ColourSource, at: &Places, interpola
             for k in 0..4 {
                 let channel = source.mixture(k);
                 for lane in 0..LANES {
-                    colours[lane] |= channel.level_in_lane([second[lane], third[lane]]) << (8 * k);
+                    colours[lane] |= channel.level([second[lane], third[lane]]) << (8 * k);
                 }
             }
             colours

@@ -3,6 +3,7 @@
 //! Duties: keeps place, colour and 1 / w of the vertices until the primitive turns out to be seen. Inputs from: set-up.
 //! Outputs to: [`super::plane`], [`super::rare`]. Clocks: none.
 
+use super::levels::whole_double;
 use super::plane::Interpolation;
 use crate::geometry::{CENTRE, PIXEL, ScreenVertex};
 
@@ -57,25 +58,12 @@ pub(super) struct Mixture {
 }
 
 impl Mixture {
-    /// The level where the other vertices have these shares, and 1/2.
-    #[inline(always)]
-    fn level_and_half(&self, shares: [f64; 2]) -> f64 {
-        let value = self.first + shares[0] * self.rises[0] + shares[1] * self.rises[1];
-        // max and min put the range's ends where there is a NaN.
-        value.max(self.limits[0]).min(self.limits[1]) + 0.5
-    }
-
     /// The level where the other vertices have these shares.
     #[inline(always)]
-    pub(super) fn level(&self, shares: [f64; 2]) -> u8 {
-        self.level_and_half(shares) as u8
-    }
-
-    /// The same without a conversion, for which lanes have no instruction: a whole number beside 2^52 is what the last
-    /// bits of the sum say.
-    #[inline(always)]
-    pub(super) fn level_in_lane(&self, shares: [f64; 2]) -> u32 {
-        (self.level_and_half(shares).floor() + (1_u64 << 52) as f64).to_bits() as u32
+    pub(super) fn level(&self, shares: [f64; 2]) -> u32 {
+        let value = self.first + shares[0] * self.rises[0] + shares[1] * self.rises[1];
+        // max and min put the range's ends where there is a NaN.
+        whole_double(value.max(self.limits[0]).min(self.limits[1]) + 0.5)
     }
 }
 
@@ -121,7 +109,7 @@ impl ColourSource {
             return self.flat();
         }
         let shares = self.shares(interpolation).at(place);
-        u32::from_le_bytes(std::array::from_fn(|k| self.mixture(k).level(shares)))
+        (0..4).map(|k| self.mixture(k).level(shares) << (8 * k as u32)).sum()
     }
 
     /// All vertices have one colour.
