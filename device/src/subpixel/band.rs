@@ -18,6 +18,7 @@ use super::lists::{Fragment, Lists};
 use super::map::Reason;
 use super::parts::Resolver;
 use super::piece::{Cover, Piece, extent};
+use super::runs::Runs;
 use super::scene::{Base, Item, Rule, Scene};
 use super::shader::{Rings, Shader};
 use super::{Counts, Setting, specification};
@@ -39,6 +40,7 @@ pub struct Work {
     /// Fragments as they are found.
     pub(super) lists: Lists,
     pub(super) spans: Vec<Span>,
+    pub(super) runs: Runs,
     /// For the chunks below one another on all lines the piece that covers them, [`UNTOUCHED`], or [`OPEN`] where each has
     /// its own owner.
     pub(super) columns: Vec<u32>,
@@ -247,6 +249,7 @@ impl Work {
         self.numbers.clear();
         self.spans.clear();
         self.lists.begin(input);
+        self.runs.clear();
         self.active.clear();
         self.active.resize(input.words() * input.lines, 0);
         let chunks = input.chunks() * input.lines;

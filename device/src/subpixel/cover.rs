@@ -59,14 +59,14 @@ impl Work {
         let bounds = Bounds::new(simd, input, &piece);
         let vertices = &input.scene.items[piece.item as usize].vertices;
         let mut centres = Centres { vertices, top: input.top, outline: None };
-        let drawn = piece.drawn;
+        let (drawn, hides) = (piece.drawn, !piece.layer && input.setting.rule != Rule::InOrder);
         self.pieces.push(piece);
         if let Cover::Samples(Some(outline)) = &cover {
-            return self.samples::<S, C, R>(simd, input, &bounds, outline, &mut centres, area);
+            return self.samples::<S, C, R>(simd, input, &bounds, outline, (centres, hides), area);
         }
-        let mut masks = Masks::new(simd, Ends::empty(simd), 0);
+        let mut masks = Masks::new(Ends::empty(simd), 0);
         for y in first..beyond {
-            let mut row = Row { y, number: 0, met: [left, right], whole: [0; 2], centre: [0; 2] };
+            let mut row = Row { y, number: 0, met: [left, right], whole: [0; 2], centre: [0; 2], taken: [0; 2] };
             row.met = match &cover {
                 Cover::Samples(_) if drawn => centres.on(y, row.met),
                 Cover::Centres(triangle) => on_row_of(triangle, y),
@@ -82,6 +82,7 @@ impl Work {
             }
             self.row::<S, C, R>(simd, input, &bounds, &mut masks, row);
         }
+        self.make_masks::<S, C, R>(simd, input, hides);
     }
 
     /// A triangle on rows of samples.
@@ -92,7 +93,7 @@ impl Work {
         input: &Input<'_>,
         bounds: &Bounds<S>,
         t: &Triangle,
-        centres: &mut Centres<'_>,
+        (mut centres, hides): (Centres<'_>, bool),
         [[left, first], [right, beyond]]: [[i32; 2]; 2],
     ) {
         let (columns, rows) = (C as i32, R as i32);
@@ -108,15 +109,15 @@ impl Work {
             let (from, to) = (upper[0].max(lower[0]), upper[1].min(lower[1]));
             taken = self.take_chunks(input, [(from + columns - 1) >> shift, to >> shift]);
         }
-        let taken = taken.map(|chunk| (chunk * LANES) as i32);
-        for y in (first..beyond).step_by(LANES / R) {
+        let step = LANES / R;
+        for y in (first..beyond).step_by(step) {
             let ends = walks.ends(simd, t, y * rows, limits);
             let pixels = ends.pixels::<C, R>();
             let misses = if drawn { ends.misses(t, y * rows) } else { 0 };
-            let mut masks = Masks::new(simd, ends, pixels.least::<C, R>());
-            for number in 0..(LANES / R).min((beyond - y) as usize) {
+            let mut masks = Masks::new(ends, pixels.least::<C, R>());
+            for number in 0..step.min((beyond - y) as usize) {
                 let y = y + number as i32;
-                let (mut met, mut whole) = (pixels.met::<C, R>(number), pixels.whole::<R>(number));
+                let (mut met, whole) = (pixels.met::<C, R>(number), pixels.whole::<R>(number));
                 let mut centre = [0; 2];
                 if misses >> (number * R + R / 2) & 1 != 0 {
                     centre = centres.on(y, [left, right]);
@@ -124,12 +125,11 @@ impl Work {
                         met = [met[0].min(centre[0]), met[1].max(centre[1])];
                     }
                 }
-                if whole[0] < whole[1] && taken[0] < taken[1] {
-                    let row = Row { y, number, met: [met[0], taken[0]], whole: [whole[0], taken[0]], centre };
-                    self.row::<S, C, R>(simd, input, bounds, &mut masks, row);
-                    (met[0], whole[0]) = (taken[1], taken[1]);
-                }
-                self.row::<S, C, R>(simd, input, bounds, &mut masks, Row { y, number, met, whole, centre });
+                let row = Row { y, number, met, whole, centre, taken };
+                self.row::<S, C, R>(simd, input, bounds, &mut masks, row);
+            }
+            if self.runs.are_many() || y + step as i32 >= beyond {
+                self.make_masks::<S, C, R>(simd, input, hides);
             }
         }
     }

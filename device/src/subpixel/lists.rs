@@ -5,6 +5,7 @@
 //! Clocks: none, lists are written while masks are made.
 
 use super::band::Input;
+use std::hint::select_unpredictable;
 
 /// What covers a part of a pixel; on the card its mask, its pixel and its primitive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,8 +52,9 @@ const MOST: usize = 1 << 18;
 /// Fragments in the order in which they are found.
 #[derive(Debug, Default)]
 pub struct Lists {
-    /// The first is [`END`].
+    /// The first is [`END`]; `used` of them mean something.
     links: Vec<Link>,
+    used: usize,
     /// The last link of each pixel of the band; 0 if it has none, as all have between bands.
     places: Vec<u32>,
     limit: usize,
@@ -62,11 +64,11 @@ pub struct Lists {
 impl Lists {
     /// Makes ready for a band, or for a part of one.
     pub(super) fn begin(&mut self, input: &Input<'_>) {
-        self.links.clear();
-        self.links.push(END);
+        self.used = 1;
         let pool = (input.setting.pool as usize).saturating_mul(input.lines);
         self.limit = pool.min(MOST).max(input.items.len());
         self.full = false;
+        self.has_room(0);
         let pixels = input.pitch() * input.lines;
         self.places.resize(pixels.max(self.places.len()), 0);
     }
@@ -74,7 +76,11 @@ impl Lists {
     /// Whether there is room for so many more; once there is not, never again.
     #[inline(always)]
     pub(super) fn has_room(&mut self, more: usize) -> bool {
-        self.full |= self.links.len() - 1 + more > self.limit;
+        self.full |= self.used - 1 + more > self.limit;
+        // One more, for what is not kept.
+        if !self.full && self.used + more >= self.links.len() {
+            self.links.resize(2 * (self.used + more + 1), END);
+        }
         !self.full
     }
 
@@ -83,34 +89,38 @@ impl Lists {
         self.full
     }
 
-    /// Adds a fragment to a pixel.
+    /// Adds a fragment to a pixel; there must be room.
     #[inline(always)]
     pub(super) fn put(&mut self, at: usize, fragment: Fragment) {
-        let before = &self.links[self.places[at] as usize];
-        self.push(at, Link { fragment, count: before.count + 1, ..*before });
+        self.put_opaque(at, fragment, [true, false], u64::MAX, &mut 0);
     }
 
-    /// Adds an opaque fragment to a pixel in which everything behind `limit` is hidden, and lowers `limit` if the
-    /// fragment completes some that cover the pixel together.
+    /// Adds a fragment to a pixel in which everything behind `limit` is hidden, if it is to be kept, and lowers `limit`
+    /// if it hides something, and completes some that cover the pixel together. What is not kept has no mask.
     #[inline(always)]
-    pub(super) fn put_opaque(&mut self, at: usize, fragment: Fragment, full: u64, limit: &mut i32) {
-        let before = &self.links[self.places[at] as usize];
-        let (mut union, mut far) = (before.union, before.far);
-        if fragment.far < *limit {
-            (union, far) = (union | fragment.mask, far.max(fragment.far));
-        }
-        if union == full {
-            *limit = far.min(*limit);
-            (union, far) = (0, i32::MIN);
-        }
-        self.push(at, Link { fragment, union, far, count: before.count + 1 });
-    }
-
-    #[inline(always)]
-    fn push(&mut self, at: usize, mut link: Link) {
+    pub(super) fn put_opaque(
+        &mut self,
+        at: usize,
+        fragment: Fragment,
+        [keep, hides]: [bool; 2],
+        full: u64,
+        limit: &mut i32,
+    ) {
         let place = &mut self.places[at];
-        link.fragment.next = std::mem::replace(place, self.links.len() as u32);
-        self.links.push(link);
+        let before = self.links[*place as usize];
+        let joins = hides & (fragment.far < *limit);
+        let union = before.union | select_unpredictable(joins, fragment.mask, 0);
+        let far = before.far.max(select_unpredictable(joins, fragment.far, i32::MIN));
+        let complete = union == full;
+        *limit = select_unpredictable(complete, far, i32::MAX).min(*limit);
+        self.links[self.used] = Link {
+            fragment: Fragment { next: *place, ..fragment },
+            union: select_unpredictable(complete, 0, union),
+            far: select_unpredictable(complete, i32::MIN, far),
+            count: before.count + 1,
+        };
+        *place = select_unpredictable(keep, self.used as u32, *place);
+        self.used += usize::from(keep);
     }
 
     /// Moves the fragments of a pixel to the end of `list`, those found last first.

@@ -1,12 +1,11 @@
 //! One row of pixels of a piece: what of it is seen becomes fragments, and hides.
 //!
 //! Duties: for the 16 pixels of a chunk the bounds of their depths, at once; of the pixels that the piece covers in part
-//! and that are not hidden already, the fragments; the others hide what lies behind them. Inputs from: [`super::cover`],
-//! [`super::walk`]. Outputs to: [`super::lists`], [`super::hide`]. Clocks: none.
+//! those that are not hidden already wait for their masks; the others hide what lies behind them. Inputs from:
+//! [`super::cover`], [`super::walk`]. Outputs to: [`super::runs`], [`super::hide`]. Clocks: none.
 
 use super::band::{Input, Work};
 use super::hide::{OPEN, Span, UNTOUCHED};
-use super::lists::Fragment;
 use super::piece::Piece;
 use super::scene::Rule;
 use super::walk::{Masks, low_bits};
@@ -87,6 +86,8 @@ pub(super) struct Row {
     pub(super) whole: [i32; 2],
     /// Those whose centres it covers, as far as that must be known.
     pub(super) centre: [i32; 2],
+    /// Chunks of the whole ones that it has on all lines of the band: first, first beyond.
+    pub(super) taken: [usize; 2],
 }
 
 impl Work {
@@ -100,9 +101,8 @@ impl Work {
         masks: &mut Masks<S>,
         row: Row,
     ) {
-        let Row { y, number, met, whole, centre } = row;
-        let parts = met[1] - met[0] - (whole[1] - whole[0]).max(0);
-        if met[0] >= met[1] || !self.lists.has_room(parts as usize) {
+        let Row { y, number, met, whole, centre, taken } = row;
+        if met[0] >= met[1] {
             return;
         }
         let place = self.pieces.len() - 1;
@@ -110,9 +110,9 @@ impl Work {
         let ordered = input.setting.rule == Rule::InOrder;
         let hides = !piece.layer && !ordered;
         let undecided = input.undecided(piece);
-        let full = input.setting.grid.full();
         let line = (y - input.top) as usize;
         let (first, last) = (met[0] as usize / LANES, (met[1] - 1) as usize / LANES);
+        self.runs.reserve(last + 1 - first);
         let step = bounds.gradient[0].wrapping_mul(LANES as i64);
         let mut next = bounds.value((first * LANES) as i32, y);
         // A whole pixel is seen.
@@ -120,10 +120,13 @@ impl Work {
         for chunk in first..=last {
             let value = next;
             next = next.wrapping_add(step);
+            if (taken[0]..taken[1]).contains(&chunk) {
+                continue;
+            }
             let x = (chunk * LANES) as i32;
             let inside = |[from, to]: [i32; 2]| low_bits(to - x) & !low_bits(from - x);
-            let (met, whole) = (inside(met), inside(whole));
-            let parts = met & !whole;
+            let (all, whole) = (inside(met), inside(whole));
+            let parts = all & !whole;
             if parts == 0 && !hides {
                 continue;
             }
@@ -149,7 +152,7 @@ impl Work {
             let depths = &mut self.depths[at];
             let limit = i32x16::from_slice(simd, &depths.far);
             // What is hidden already changes nothing.
-            let seen = near.simd_le(limit).to_bitmask() as u32 & met;
+            let seen = near.simd_le(limit).to_bitmask() as u32 & all;
             if seen & whole != 0 && hides {
                 seen_whole = true;
                 let seen = mask32x16::from_bitmask(simd, u64::from(seen & whole));
@@ -159,36 +162,30 @@ impl Work {
                 seen.select(second.min(nearest.max(near)), second).store_slice(&mut depths.second);
                 seen.select(nearest.min(near), nearest).store_slice(&mut depths.near);
             }
-            let mut left = seen & parts;
-            if left == 0 {
+            if parts == 0 {
                 continue;
             }
-            let (mut nears, mut fars) = ([0; LANES], [0; LANES]);
-            near.store_slice(&mut nears);
-            far.store_slice(&mut fars);
-            masks.reach::<C, R>(simd, [x + left.trailing_zeros() as i32, x + 31 - left.leading_zeros() as i32]);
-            let mut put = 0;
-            while left != 0 {
-                let lane = left.trailing_zeros() as usize % LANES;
-                left &= left - 1;
-                let column = x + lane as i32;
-                let mask = masks.mask::<C, R>(simd, number, column);
-                if mask == 0 && !(centre[0]..centre[1]).contains(&column) {
-                    continue;
-                }
-                put |= 1 << lane;
-                let fragment = Fragment::new(mask, place as u32, [nears[lane], fars[lane]]);
-                if hides {
-                    self.lists.put_opaque(at * LANES + lane, fragment, full, &mut depths.far[lane]);
-                } else {
-                    self.lists.put(at * LANES + lane, fragment);
-                }
-            }
-            self.active[line * input.words() + chunk / 4] |= put << (chunk % 4 * LANES);
+            masks.reach::<C>(simd, &mut self.runs.slots, [met[0].max(x), (met[1] - 1).min(x + LANES as i32 - 1)]);
+            self.runs.push(|run| {
+                near.store_slice(&mut run.near);
+                far.store_slice(&mut run.far);
+                run.at = at as u32;
+                run.pixels = seen & parts;
+                run.centres = inside(centre);
+                run.place = masks.place::<C, R>(number, x);
+                run.active = (line * input.words() * 64 + chunk * LANES) as u32;
+            });
         }
-        if whole[0] < whole[1] && seen_whole {
-            let columns = whole.map(|column| column as u16);
-            self.spans.push(Span { piece: place as u32, line: line as u16, columns });
+        if !seen_whole {
+            return;
+        }
+        let [left, right] = taken.map(|chunk| (chunk * LANES) as i32);
+        let spans = if left < right { [[whole[0], left], [right, whole[1]]] } else { [whole, [0; 2]] };
+        for columns in spans {
+            if columns[0] < columns[1] {
+                let columns = columns.map(|column| column as u16);
+                self.spans.push(Span { piece: place as u32, line: line as u16, columns });
+            }
         }
     }
 }

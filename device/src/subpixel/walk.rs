@@ -85,11 +85,8 @@ impl<S: Simd> Ends<S> {
         let fours = pairs.unzip_low(pairs).min(pairs.unzip_high(pairs));
         let outer = if R == 8 { fours.unzip_low(fours).min(fours.unzip_high(fours)) } else { fours };
         // The left border is convex and the right one concave: what all rows cover, the first and the last do.
-        let [last_from, last_to] = if R == 8 {
-            [from.slide::<7>(from), to.slide::<7>(to)]
-        } else {
-            [from.slide::<3>(from), to.slide::<3>(to)]
-        };
+        let [last_from, last_to] =
+            if R == 8 { [from.slide::<7>(from), to.slide::<7>(to)] } else { [from.slide::<3>(from), to.slide::<3>(to)] };
         let mut pixels = Pixels { outer: [0; LANES], inner: [[0; LANES]; 2] };
         outer.store_slice(&mut pixels.outer);
         ((from.max(last_from) + (C as i32 - 1)) >> C.ilog2()).store_slice(&mut pixels.inner[0]);
@@ -138,58 +135,82 @@ impl Pixels {
     }
 }
 
-/// Pixels that [`Masks`] reach: their columns of samples count to less than 255.
+/// Pixels that a [`Slot`] reaches: their columns of samples count to less than 255.
 const REACH: i32 = 31;
 
-/// Masks of the pixels on rows of pixels that are walked together.
-///
-/// Every sample has a lane of 8 bits, lane k is bit k of a mask: it holds the column that its row begins or ends with,
-/// counted from a pixel's first. Two vectors have room for all samples of [`LANES`] rows.
+/// What all samples of some rows of pixels are told from: each has a lane of 8 bits, lane k is bit k of a mask.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Slot {
+    /// The columns that the samples' rows begin and end with, counted from a pixel's first.
+    ends: [[u8; 64]; 2],
+}
+
+/// Where the masks of the pixels on rows that are walked together come from.
 pub(super) struct Masks<S: Simd> {
     ends: Ends<S>,
     /// No row begins before this pixel.
     least: i32,
     /// The pixel that columns are counted from.
     base: i32,
-    froms: [u8x64<S>; 2],
-    tos: [u8x64<S>; 2],
+    /// The slot of the first rows.
+    first: usize,
 }
 
 impl<S: Simd> Masks<S> {
     /// Masks of rows none of which begins before pixel `least`.
     #[inline(always)]
-    pub(super) fn new(simd: S, ends: Ends<S>, least: i32) -> Self {
-        let none = [u8x64::splat(simd, 0); 2];
-        Masks { ends, least, base: i32::MAX, froms: none, tos: none }
+    pub(super) fn new(ends: Ends<S>, least: i32) -> Self {
+        Masks { ends, least, base: i32::MAX, first: 0 }
     }
 
-    /// Makes ready for pixels `from..=to`, of one chunk.
+    /// Sees to it that there are slots for pixels `from..=to`, of one chunk.
     #[inline(always)]
-    pub(super) fn reach<const C: usize, const R: usize>(&mut self, simd: S, [from, to]: [i32; 2]) {
+    pub(super) fn reach<const C: usize>(&mut self, simd: S, slots: &mut Vec<Slot>, [from, to]: [i32; 2]) {
         if from >= self.base && to - self.base < REACH {
             return;
         }
         self.base = if to - self.least < REACH { self.least.min(from) } else { from };
+        self.first = slots.len();
         let base = i32x16::splat(simd, self.base * C as i32);
-        let lanes = |columns: i32x16<S>| {
+        let lanes = |columns: i32x16<S>| -> [u8x64<S>; 2] {
             // Lane 0 is a sample of the last row.
             let columns: u32x16<S> = (columns - base).max(0).min(255).reverse().bitcast();
             let four = columns * 0x0101_0101;
-            if C == 8 { [four.zip_high(four).bitcast(), four.zip_low(four).bitcast()] } else { [four.bitcast(); 2] }
+            if C == 8 {
+                [four.zip_high(four).bitcast(), four.zip_low(four).bitcast()]
+            } else {
+                [four.bitcast(), four.bitcast()]
+            }
         };
-        (self.froms, self.tos) = (lanes(self.ends.from), lanes(self.ends.to));
+        let (from, to) = (lanes(self.ends.from), lanes(self.ends.to));
+        for k in 0..C / 4 {
+            let mut slot = Slot { ends: [[0; 64]; 2] };
+            from[k].store_slice(&mut slot.ends[0]);
+            to[k].store_slice(&mut slot.ends[1]);
+            slots.push(slot);
+        }
     }
 
-    /// Samples of pixel `x` of row `k` that are covered, once it is reached.
+    /// For the pixels from `x` on of row `number`, if they are reached: the slot, the place of a pixel's mask in its
+    /// lanes, and the column, modulo 256.
     #[inline(always)]
-    pub(super) fn mask<const C: usize, const R: usize>(&self, simd: S, k: usize, x: i32) -> u64 {
-        // Rows in a vector.
+    pub(super) fn place<const C: usize, const R: usize>(&self, number: usize, x: i32) -> [u32; 3] {
         let rows = 64 / (C * R);
-        let columns: [u8; 64] = std::array::from_fn(|lane| (C - 1 - lane % C) as u8);
-        let columns = u8x64::from_slice(simd, &columns) + ((x - self.base) * C as i32) as u8;
-        let place = k / rows;
-        let covered = self.froms[place].simd_le(columns) & self.tos[place].simd_gt(columns);
-        (covered.to_bitmask() >> ((rows - 1 - k % rows) * C * R)) & (u64::MAX >> (64 - C * R))
+        let shift = (rows - 1 - number % rows) * C * R;
+        [(self.first + number / rows) as u32, shift as u32, (x.wrapping_sub(self.base) * C as i32) as u32]
+    }
+}
+
+impl Slot {
+    /// Samples that are covered of the pixel in a place, as [`Masks::place`] has it for the first of `lane`.
+    #[inline(always)]
+    pub(super) fn mask<S: Simd, const C: usize, const R: usize>(&self, simd: S, shift: u32, column: u32) -> u64 {
+        let samples: [u8; 64] = std::array::from_fn(|lane| (C - 1 - lane % C) as u8);
+        let columns = u8x64::from_slice(simd, &samples) + column as u8;
+        let [from, to] = &self.ends;
+        let covered = u8x64::from_slice(simd, from).simd_le(columns) & u8x64::from_slice(simd, to).simd_gt(columns);
+        (covered.to_bitmask() >> shift) & (u64::MAX >> (64 - C * R))
     }
 }
 
