@@ -54,8 +54,12 @@ pub struct Work {
     pub(super) stacked: Vec<u8>,
     /// Items of the band from the nearest to the farthest, so far as that may save time.
     order: Vec<Entry>,
+    /// Fragments of one pixel.
+    list: Vec<Fragment>,
     /// Fragments in the lists of each line.
     pub(super) used: [usize; LINES],
+    /// Lanes in which colours are found and depths compared; by the specification without.
+    pub(super) level: Option<Level>,
     /// The pieces in brief.
     pub(super) briefs: Vec<Brief>,
     pub(super) pixels: Pixels,
@@ -198,6 +202,7 @@ impl Work {
     /// Resolves the active pixels of a band, by lanes of `level` or by the specification.
     pub fn draw(&mut self, level: Option<Level>, input: &Input<'_>, out: &mut Vec<Resolved>, counts: &mut Counts) {
         self.used = [0; LINES];
+        self.level = level;
         match level {
             Some(level) => {
                 sort(input, &mut self.order);
@@ -227,7 +232,7 @@ impl Work {
             _ => dispatch!(level, simd => self.gather::<_, 8, 8>(simd, input, area)),
         }
         if !self.lists.is_full() {
-            return self.finish(level, input, out, counts);
+            return self.finish(input, out, counts);
         }
         self.each_active(input, |work, at, _| work.lists.drop(at));
         let [[left, first], [right, beyond]] = area;
@@ -358,18 +363,18 @@ impl Work {
     }
 
     /// Resolves the pixels that may be active, and are.
-    fn finish(&mut self, level: Level, input: &Input<'_>, out: &mut Vec<Resolved>, counts: &mut Counts) {
-        let mut list = self.open_pixels(input);
+    fn finish(&mut self, input: &Input<'_>, out: &mut Vec<Resolved>, counts: &mut Counts) {
+        self.open_pixels(input);
+        let mut list = std::mem::take(&mut self.list);
         self.each_active(input, |work, at, place| {
-            let first = list.len();
+            list.clear();
             work.lists.take(at, &mut list);
-            match left::keep(work, input, &mut list, first, place) {
-                Some(apart) => work.take_up(input, &mut list, first, place, apart, counts),
-                None => list.truncate(first),
+            if let Some(apart) = left::keep(work, input, &mut list, place) {
+                work.take_up(input, &list, place, apart, out, counts);
             }
         });
-        self.pixels.fragments = list;
-        self.close_pixels(Some(level), input, out, counts);
+        self.list = list;
+        self.close_pixels(input, out, counts);
     }
 }
 

@@ -1,9 +1,9 @@
 //! From the fragments that are left in a band's active pixels to the pixels' colours.
 //!
-//! The pixels are first *taken up*, all of them. Then some at a time are cut into *shares* ([`super::pixel`]): so many
-//! samples of one colour. The colours of fragments are only asked for there, and found piece by piece when some pixels
-//! have their shares ([`super::shader`]); the mean of a pixel's shares is its colour. What a fragment's colour decides
-//! (it is a hole, or a layer's) is found for all pixels beforehand.
+//! A pixel is *taken up*, and cut into *shares* ([`super::pixel`]): so many samples of one colour. The colours of
+//! fragments are only asked for there, and found piece by piece when some pixels have their shares ([`super::shader`]);
+//! the mean of a pixel's shares is its colour. In a band with layers all pixels are taken up first: what a fragment's
+//! colour decides (it is a hole, or a layer's) is found for all of them before any is cut.
 //!
 //! Inputs from: [`super::band`], [`super::specification`]. Outputs to: [`super::unit`]. Clocks: an active pixel costs one.
 
@@ -30,19 +30,26 @@ pub(super) struct Share {
     asked: bool,
 }
 
-/// A pixel that is active.
+/// A pixel that is active, and cut into shares.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Active {
+struct Active {
     x: u16,
     /// Row of the target.
+    y: u16,
+    /// The first share beyond its own.
+    shares: u32,
+    reason: Reason,
+}
+
+/// One that waits for what its fragments' colours decide.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    x: u16,
     y: u16,
     /// Its first fragment's place, and the first beyond.
     fragments: [u32; 2],
     /// No sample of it is covered twice.
     apart: bool,
-    /// The first share beyond its own.
-    shares: u32,
-    reason: Reason,
 }
 
 /// What is known of a fragment before its pixel is cut into shares.
@@ -57,11 +64,14 @@ pub(super) struct Early {
 #[derive(Debug, Default)]
 pub struct Pixels {
     active: Vec<Active>,
-    /// The fragments of one after another.
-    pub(super) fragments: Vec<Fragment>,
-    /// What is known of each fragment beforehand; nothing where no piece is a layer.
-    early: Vec<Early>,
     shares: Shares,
+    /// A piece of the band is a layer, and pixels wait.
+    wait: bool,
+    waiting: Vec<Waiting>,
+    /// The fragments of those that wait, one after another.
+    fragments: Vec<Fragment>,
+    /// What is known of each beforehand.
+    early: Vec<Early>,
     /// Fragments that ask early.
     asking: Vec<u32>,
     questions: Queue,
@@ -134,94 +144,122 @@ fn gathered(levels: u64) -> u32 {
 }
 
 impl Work {
-    /// Makes ready for the active pixels of a band whose pieces are set up; returns the memory of their fragments.
-    pub(super) fn open_pixels(&mut self, input: &Input<'_>) -> Vec<Fragment> {
+    /// Makes ready for the active pixels of a band whose pieces are set up.
+    pub(super) fn open_pixels(&mut self, input: &Input<'_>) {
         self.shader.begin(self.pieces.len());
         self.rings.begin(input.setting.grid);
         let draws = &input.scene.draws;
         self.briefs.clear();
         self.briefs.extend(self.pieces.iter().map(|piece| Brief::new(piece, &draws[piece.draw as usize])));
-        self.pixels.active.clear();
+        self.pixels.wait = self.briefs.iter().any(|brief| brief.layer);
+        self.pixels.waiting.clear();
         self.pixels.fragments.clear();
-        std::mem::take(&mut self.pixels.fragments)
     }
 
-    /// Takes up the pixel in column `x` of line `line`, whose fragments are those of `list` from place `first` on, in
-    /// order of submission; `apart` if no sample is covered twice.
+    /// Takes up the pixel in column `x` of line `line`, with what is left there in order of submission; `apart` if no
+    /// sample is covered twice.
     #[inline(always)]
     pub(super) fn take_up(
         &mut self,
         input: &Input<'_>,
-        list: &mut Vec<Fragment>,
-        first: usize,
+        list: &[Fragment],
         [x, line]: [usize; 2],
         apart: bool,
+        out: &mut Vec<Resolved>,
         counts: &mut Counts,
     ) {
         let full = input.setting.grid.full();
-        counts.masks += list[first..].iter().filter(|fragment| fragment.mask != full).count() as u64;
-        let fits = self.used[line] + list.len() - first <= input.setting.pool as usize;
-        if fits {
-            self.used[line] += list.len() - first;
-        } else {
-            list.truncate(first);
+        counts.masks += list.iter().filter(|fragment| fragment.mask != full).count() as u64;
+        let (x, y) = (x as u16, input.top as u16 + line as u16);
+        if self.used[line] + list.len() > input.setting.pool as usize {
+            counts.degraded += 1;
+            out.push(Resolved { x, y, colour: 0, reason: Reason::Degraded });
+            return;
         }
-        let reason = if fits { Reason::Untouched } else { Reason::Degraded };
-        let (x, y, fragments) = (x as u16, input.top as u16 + line as u16, [first as u32, list.len() as u32]);
-        self.pixels.active.push(Active { x, y, fragments, apart, shares: 0, reason });
+        self.used[line] += list.len();
+        if self.pixels.wait {
+            let first = self.pixels.fragments.len() as u32;
+            self.pixels.fragments.extend_from_slice(list);
+            let fragments = [first, first + list.len() as u32];
+            self.pixels.waiting.push(Waiting { x, y, fragments, apart });
+            return;
+        }
+        self.cut(input, list, &[], [x, y], apart, counts);
+        if self.pixels.shares.list.len() >= TOGETHER {
+            self.flush(input, out, counts);
+        }
     }
 
-    /// Resolves the pixels that were taken up, by lanes of `level` or one place at a time.
+    /// Resolves the pixels that were taken up and not yet resolved.
     pub(super) fn close_pixels(
         &mut self,
-        level: Option<Level>,
         input: &Input<'_>,
         out: &mut Vec<Resolved>,
         counts: &mut Counts,
     ) {
-        let mut pixels = std::mem::take(&mut self.pixels);
-        let source = Source { pieces: &self.pieces, draws: &input.scene.draws };
-        pixels.ask_early(level, &self.briefs, &self.rings, &mut self.shader, source, counts);
-        let Pixels { active, fragments, early, shares, .. } = &mut pixels;
-        let (setting, scene, width) = (input.setting, input.scene, input.setting.size[0] as usize);
-        let space = Space::new(setting.resolve);
-        let mut done = 0;
-        for place in 0..active.len() {
-            let Active { x, y, fragments: [from, to], apart, reason, .. } = active[place];
-            if reason != Reason::Degraded {
-                let [column, row] = [x, y].map(usize::from);
+        if self.pixels.wait {
+            let source = Source { pieces: &self.pieces, draws: &input.scene.draws };
+            self.pixels.ask_early(self.level, &self.briefs, &self.rings, &mut self.shader, source, counts);
+            let waiting = std::mem::take(&mut self.pixels.waiting);
+            let fragments = std::mem::take(&mut self.pixels.fragments);
+            let early = std::mem::take(&mut self.pixels.early);
+            for &Waiting { x, y, fragments: [from, to], apart } in &waiting {
                 let range = from as usize..to as usize;
-                let pixel = Pixel {
-                    setting,
-                    level,
-                    space,
-                    source,
-                    briefs: &self.briefs,
-                    rings: &self.rings,
-                    early: early.get(range.clone()).unwrap_or_default(),
-                    fragments: &fragments[range],
-                    place: [column as i32, row as i32],
-                    base: (scene.colour.at(row * width + column), scene.depth.at(row * width + column)),
-                };
-                active[place].reason = self.resolver.resolve(&pixel, apart, shares, counts);
-                counts.active += 1;
-            }
-            active[place].shares = shares.list.len() as u32;
-            if shares.list.len() >= TOGETHER || place + 1 == active.len() {
-                shares.queue.answer(level, Question::Colour, &mut self.shader, source, Some(counts));
-                let mut first = 0;
-                for &Active { x, y, shares: beyond, reason, .. } in &active[done..=place] {
-                    let range = first..beyond as usize;
-                    first = range.end;
-                    let colour = if range.is_empty() { 0 } else { shares.mean(range, setting, space) };
-                    out.push(Resolved { x, y, colour, reason });
+                self.cut(input, &fragments[range.clone()], &early[range], [x, y], apart, counts);
+                if self.pixels.shares.list.len() >= TOGETHER {
+                    self.flush(input, out, counts);
                 }
-                done = place + 1;
-                shares.list.clear();
-                shares.queue.clear();
             }
+            (self.pixels.waiting, self.pixels.fragments, self.pixels.early) = (waiting, fragments, early);
         }
-        self.pixels = pixels;
+        self.flush(input, out, counts);
+    }
+
+    /// Cuts a pixel into shares.
+    #[inline(always)]
+    fn cut(
+        &mut self,
+        input: &Input<'_>,
+        fragments: &[Fragment],
+        early: &[Early],
+        [x, y]: [u16; 2],
+        apart: bool,
+        counts: &mut Counts,
+    ) {
+        let (setting, scene) = (input.setting, input.scene);
+        let at = usize::from(y) * setting.size[0] as usize + usize::from(x);
+        let pixel = Pixel {
+            setting,
+            level: self.level,
+            space: Space::new(setting.resolve),
+            source: Source { pieces: &self.pieces, draws: &scene.draws },
+            briefs: &self.briefs,
+            rings: &self.rings,
+            early,
+            fragments,
+            place: [x, y].map(i32::from),
+            base: (scene.colour.at(at), scene.depth.at(at)),
+        };
+        counts.active += 1;
+        let reason = self.resolver.resolve(&pixel, apart, &mut self.pixels.shares, counts);
+        self.pixels.active.push(Active { x, y, shares: self.pixels.shares.list.len() as u32, reason });
+    }
+
+    /// Finds the colours that shares wait for, and the means of the pixels that were cut.
+    fn flush(&mut self, input: &Input<'_>, out: &mut Vec<Resolved>, counts: &mut Counts) {
+        let source = Source { pieces: &self.pieces, draws: &input.scene.draws };
+        let Pixels { active, shares, .. } = &mut self.pixels;
+        shares.queue.answer(self.level, Question::Colour, &mut self.shader, source, Some(counts));
+        let space = Space::new(input.setting.resolve);
+        let mut first = 0;
+        for &Active { x, y, shares: beyond, reason } in &*active {
+            let colour = shares.mean(first..beyond as usize, input.setting, space);
+            first = beyond as usize;
+            out.push(Resolved { x, y, colour, reason });
+        }
+        active.clear();
+        shares.list.clear();
+        shares.queue.clear();
     }
 }
 
@@ -237,9 +275,6 @@ impl Pixels {
         counts: &mut Counts,
     ) {
         self.early.clear();
-        if !briefs.iter().any(|brief| brief.layer) {
-            return;
-        }
         self.early.resize(self.fragments.len(), Early::default());
         self.ask_of(briefs, rings, |brief, _| brief.holes);
         self.questions.answer(level, Question::Hole, shader, source, Some(counts));
@@ -253,11 +288,12 @@ impl Pixels {
             self.early[number as usize].colour = Some(answer);
         }
     }
+
     /// Asks for those fragments that `asks` says, by their pieces and whether there are layers in their pixel.
     fn ask_of(&mut self, briefs: &[Brief], rings: &Rings, asks: impl Fn(&Brief, bool) -> bool) {
         self.questions.clear();
         self.asking.clear();
-        for &Active { x, y, fragments: [from, to], .. } in &self.active {
+        for &Waiting { x, y, fragments: [from, to], .. } in &self.waiting {
             let range = from as usize..to as usize;
             let fragments = &self.fragments[range.clone()];
             let brief = |fragment: &Fragment| &briefs[fragment.piece as usize];

@@ -17,41 +17,46 @@ use crate::hidden::z_buffer::specification::covers;
 /// So many fragments are put in order by insertion.
 const FEW: usize = 16;
 
-/// Drops those fragments of a pixel, the last of `list` from place `first` on, that are hidden, and puts the others in
-/// order of submission. `None` if the pixel in column `x` of line `line` is not active, else whether no sample of it is
-/// covered twice.
+/// Drops the fragments that are hidden, and puts the others in order of submission. `None` if the pixel in column `x` of
+/// line `line` is not active, else whether no sample of it is covered twice.
 #[inline(always)]
 pub(super) fn keep(
     work: &Work,
     input: &Input<'_>,
     list: &mut Vec<Fragment>,
-    first: usize,
     [x, line]: [usize; 2],
 ) -> Option<bool> {
-    if list.len() == first {
-        return None;
-    }
-    let mut cover = Cover::new(work, &list[first..]);
+    // Most pixels have two fragments or three: loops over a known number have no end to be guessed.
+    let mut cover = match &list[..] {
+        [] => return None,
+        two @ [_, _] => Cover::new(work, two),
+        three @ [_, _, _] => Cover::new(work, three),
+        all => Cover::new(work, all),
+    };
     if input.setting.rule != Rule::InOrder {
         let base = input.base_at(x, line);
-        let limit = cover.limit(work, input, list, first, base);
-        let left = list.len() - first + usize::from(base <= limit);
-        let place = [x as i32, input.top + line as i32];
-        if left < 2 || (limit < base && is_plain(work, input, &list[first..], limit, place)) {
+        let limit = cover.limit(work, input, list, base);
+        let left = list.len() + usize::from(base <= limit);
+        if left < 2 || (limit < base && is_plain(work, input, list, limit, [x as i32, input.top + line as i32])) {
             return None;
         }
     }
-    let list = &mut list[first..];
     let item = |fragment: &Fragment| work.briefs[fragment.piece as usize].item;
-    if list.len() > FEW {
-        list.sort_unstable_by_key(item);
-        return Some(cover.twice == 0);
-    }
-    for end in 1..list.len() {
-        let mut place = end;
-        while place > 0 && item(&list[place - 1]) > item(&list[place]) {
-            list.swap(place - 1, place);
-            place -= 1;
+    match &mut list[..] {
+        [a, b] => {
+            if item(a) > item(b) {
+                std::mem::swap(a, b);
+            }
+        }
+        many if many.len() > FEW => many.sort_unstable_by_key(item),
+        few => {
+            for end in 1..few.len() {
+                let mut place = end;
+                while place > 0 && item(&few[place - 1]) > item(&few[place]) {
+                    few.swap(place - 1, place);
+                    place -= 1;
+                }
+            }
         }
     }
     Some(cover.twice == 0)
@@ -82,9 +87,9 @@ impl Cover {
         cover
     }
 
-    /// The limit of a pixel, behind which nothing of `list` stays from place `first` on.
+    /// The limit of a pixel, behind which nothing of `list` stays.
     #[inline(always)]
-    fn limit(&mut self, work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, first: usize, base: i32) -> i32 {
+    fn limit(&mut self, work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, base: i32) -> i32 {
         let full = input.setting.grid.full();
         // Without any of them there are samples that are not covered.
         if self.twice == 0 && !self.odd {
@@ -93,23 +98,16 @@ impl Cover {
         if self.all != full {
             return base;
         }
-        list[first..].sort_unstable_by_key(|fragment| fragment.far);
+        list.sort_unstable_by_key(|fragment| fragment.far);
         let mut union = 0;
-        let opaque = list[first..].iter().filter(|fragment| !work.briefs[fragment.piece as usize].layer);
+        let opaque = list.iter().filter(|fragment| !work.briefs[fragment.piece as usize].layer);
         let limit = opaque.into_iter().find_map(|fragment| {
             union |= fragment.mask;
             (union == full).then_some(fragment.far)
         });
         let limit = limit.map_or(base, |limit| limit.min(base));
-        let mut beyond = first;
-        for place in first..list.len() {
-            if list[place].near <= limit {
-                list[beyond] = list[place];
-                beyond += 1;
-            }
-        }
-        list.truncate(beyond);
-        *self = Cover::new(work, &list[first..]);
+        list.retain(|fragment| fragment.near <= limit);
+        *self = Cover::new(work, list);
         limit
     }
 }

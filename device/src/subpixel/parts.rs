@@ -96,28 +96,46 @@ impl Resolver {
     /// ordered. Whether it is so simple.
     #[inline(always)]
     pub(super) fn mosaic(&mut self, pixel: &Pixel<'_>, shares: &mut Shares, counts: &mut Counts) -> bool {
+        // Most have two fragments or three.
+        match pixel.fragments {
+            two @ [_, _] => self.mosaic_of(pixel, two, shares, counts),
+            three @ [_, _, _] => self.mosaic_of(pixel, three, shares, counts),
+            all => self.mosaic_of(pixel, all, shares, counts),
+        }
+    }
+
+    #[inline(always)]
+    fn mosaic_of(
+        &mut self,
+        pixel: &Pixel<'_>,
+        fragments: &[Fragment],
+        shares: &mut Shares,
+        counts: &mut Counts,
+    ) -> bool {
         let (colour, depth) = pixel.base;
         let mut rest = pixel.setting.grid.full();
-        for (number, fragment) in pixel.fragments.iter().enumerate() {
-            let brief = pixel.brief(number);
+        let mut simple = true;
+        for fragment in fragments {
+            let brief = &pixel.briefs[fragment.piece as usize];
             let before = match pixel.setting.rule {
                 Rule::Nearest => brief.range[1] < depth,
                 Rule::Last => true,
                 Rule::InOrder => false,
             };
-            if !before || brief.layer {
-                return false;
-            }
+            simple &= before & !brief.layer;
             rest &= !fragment.mask;
+        }
+        if !simple {
+            return false;
         }
         if rest != 0 {
             counts.packed += 1;
             shares.plain(colour, rest);
         }
         self.seen.clear();
-        for (number, &Fragment { mask, .. }) in pixel.fragments.iter().enumerate() {
-            if mask != 0 {
-                shares.fragment(pixel, number, mask, counts);
+        for (number, fragment) in fragments.iter().enumerate() {
+            if fragment.mask != 0 {
+                shares.fragment(pixel, number, fragment.mask, counts);
                 self.merge(pixel, number, counts);
             }
         }

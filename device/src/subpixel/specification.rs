@@ -24,20 +24,17 @@ pub fn draw(work: &mut Work, input: &Input<'_>, out: &mut Vec<Resolved>, counts:
         work.pieces.push(piece);
         work.covers.push((cover, input.area(item, [[0, input.top], [i32::MAX, beyond]])));
     }
-    let mut list = work.open_pixels(input);
+    work.open_pixels(input);
+    let mut list = Vec::new();
     for line in 0..input.lines {
         for x in 0..input.setting.size[0] as usize {
-            let first = list.len();
-            let mut left = Vec::new();
-            if pixel(work, input, &mut left, x, line) {
-                let apart = disjoint(&left);
-                list.append(&mut left);
-                work.take_up(input, &mut list, first, [x, line], apart, counts);
+            list.clear();
+            if pixel(work, input, &mut list, x, line) {
+                work.take_up(input, &list, [x, line], disjoint(&list), out, counts);
             }
         }
     }
-    work.pixels.fragments = list;
-    work.close_pixels(None, input, out, counts);
+    work.close_pixels(input, out, counts);
 }
 
 /// Samples of a pixel that a piece covers.
