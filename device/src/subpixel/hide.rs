@@ -9,7 +9,7 @@
 //! Inputs from: [`super::cover`]. Outputs to: [`super::band`].
 
 use super::band::{Input, Work};
-use super::row::Bounds;
+use super::rows::Bounds;
 use crate::hidden::z_buffer::kernel::{LANE, LANES};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x16, u32x16};
