@@ -87,7 +87,7 @@ impl Work {
             }
         }
         Ends::empty(simd).slots::<C>(simd, 0, &mut self.runs.slots);
-        self.rows::<S, C, R>(simd, input, &bounds, &mut rows, |_, _, _| [0; 2]);
+        self.rows::<S, C, R>(simd, input, &bounds, &mut rows, |_, _, _, _| [0; 2]);
     }
 
     /// A triangle on rows of samples.
@@ -116,7 +116,8 @@ impl Work {
         }
         // Rows of pixels that are walked together.
         let step = LANES / R;
-        let near = right - left <= REACH;
+        // The pixel that their slots count columns from: the first that is met.
+        let mut bases = [0; LINES];
         let mut missed = 0_u32;
         for place in (0..rows.count).step_by(step) {
             let row = (first + place as i32) * height;
@@ -129,9 +130,9 @@ impl Work {
             for k in 0..step {
                 missed |= (misses >> (k * R + R / 2) & 1) << (place + k);
             }
-            if near {
-                ends.slots::<C>(simd, left, &mut self.runs.slots);
-            }
+            let base = rows.rows[place..place + step].iter().fold(right, |base, row| base.min(row.met[0]));
+            bases[place / step] = base;
+            ends.slots::<C>(simd, base, &mut self.runs.slots);
         }
         if let Some(mut centres) = centres {
             missed &= (1 << rows.count) - 1;
@@ -147,13 +148,14 @@ impl Work {
             }
         }
         let mut made = [(usize::MAX, 0, 0); 2];
-        self.rows::<S, C, R>(simd, input, bounds, rows, |slots, place, x| {
-            let number = place / Slot::rows(C, R);
-            if near {
-                return [number as u32, ((x - left) * columns) as u32];
+        self.rows::<S, C, R>(simd, input, bounds, rows, |slots, place, x, [from, last]| {
+            let (batch, number) = (place / step, place / Slot::rows(C, R));
+            let base = bases[batch];
+            // A centre may lie before what samples meet.
+            if from >= base && last - base < REACH {
+                return [number as u32, (x.wrapping_sub(base) * columns) as u32];
             }
-            // Both sides of a row need one.
-            let batch = place / step;
+            // Both sides of some rows need one.
             if (made[0].0, made[0].1) != (batch, x) {
                 made.swap(0, 1);
                 if (made[0].0, made[0].1) != (batch, x) {

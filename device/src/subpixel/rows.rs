@@ -110,8 +110,8 @@ pub(super) struct Visit {
 }
 
 impl Work {
-    /// The rows of the last piece. `slots` gives, for a row and the first column of a chunk, the slot and the column of
-    /// its first pixel there.
+    /// The rows of the last piece. `slots` gives, for a row, the first column of a chunk, and the first and last pixel
+    /// met there, the slot and the column of the chunk's first pixel.
     #[inline(always)]
     pub(super) fn rows<S: Simd, const C: usize, const R: usize>(
         &mut self,
@@ -119,7 +119,7 @@ impl Work {
         input: &Input<'_>,
         bounds: &Bounds<S>,
         rows: &mut Rows,
-        mut slots: impl FnMut(&mut Vec<Slot>, usize, i32) -> [u32; 2],
+        mut slots: impl FnMut(&mut Vec<Slot>, usize, i32, [i32; 2]) -> [u32; 2],
     ) {
         self.meet(simd, input, bounds, rows);
         let lane = u32x16::from_slice(simd, &LANE);
@@ -146,8 +146,10 @@ impl Work {
             whole.select(second.min(nearest.max(near)), second).store_slice(&mut depths.second);
             whole.select(nearest.min(near), nearest).store_slice(&mut depths.near);
             let centres = inside(columns, row.centre).to_bitmask() as u32;
-            let [slot, column] = slots(&mut self.runs.slots, number, x as i32);
-            let active = (line * input.words() * 64) as u32 + x;
+            let x = x as i32;
+            let reach = [row.met[0].max(x), (row.met[1] - 1).min(x + LANES as i32 - 1)];
+            let [slot, column] = slots(&mut self.runs.slots, number, x, reach);
+            let active = (line * input.words() * 64) as u32 + x as u32;
             self.runs.push(|run: &mut Run| {
                 near.store_slice(&mut run.near);
                 far.store_slice(&mut run.far);
