@@ -18,6 +18,7 @@ use super::lists::{Fragment, Lists};
 use super::map::Reason;
 use super::parts::Resolver;
 use super::piece::{Cover, Piece, extent};
+use super::rows::Visit;
 use super::runs::Runs;
 use super::scene::{Base, Item, Rule, Scene};
 use super::shader::{Rings, Shader};
@@ -40,6 +41,8 @@ pub struct Work {
     /// Fragments as they are found.
     pub(super) lists: Lists,
     pub(super) spans: Vec<Span>,
+    /// Chunks that the last piece meets.
+    pub(super) visits: Vec<Visit>,
     pub(super) runs: Runs,
     /// For the chunks below one another on all lines the piece that covers them, [`UNTOUCHED`], or [`OPEN`] where each has
     /// its own owner.

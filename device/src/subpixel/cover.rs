@@ -3,14 +3,14 @@
 //! A triangle that is drawn with masks is walked on rows of samples as on rows of pixels. On each row of pixels it
 //! covers, from left to right, some pixels in part, then some wholly (a *span*), then some in part.
 //!
-//! Inputs from: [`super::piece`], [`super::walk`]. Outputs to: [`super::row`]. Clocks: those of masks are counted when it
+//! Inputs from: [`super::piece`], [`super::walk`]. Outputs to: [`super::rows`]. Clocks: those of masks are counted when it
 //! is known what is left ([`super::band`]).
 
-use super::band::{Input, Work};
+use super::band::{Input, LINES, Work};
 use super::piece::{Cover, Piece};
-use super::row::{Bounds, Row};
+use super::rows::{Bounds, Row, Rows};
 use super::scene::Rule;
-use super::walk::{Ends, Masks, Walks};
+use super::walk::{Ends, REACH, Slot, Walks};
 use crate::geometry::line::Line;
 use crate::geometry::plane::Axis;
 use crate::geometry::triangle::Triangle;
@@ -59,79 +59,113 @@ impl Work {
         let bounds = Bounds::new(simd, input, &piece);
         let vertices = &input.scene.items[piece.item as usize].vertices;
         let mut centres = Centres { vertices, top: input.top, outline: None };
-        let (drawn, hides) = (piece.drawn, !piece.layer && input.setting.rule != Rule::InOrder);
+        let mut rows = Rows {
+            rows: [Row::default(); LINES],
+            line: (first - input.top) as usize,
+            count: (beyond - first) as usize,
+            taken: [0; 2],
+            hides: !piece.layer && input.setting.rule != Rule::InOrder,
+        };
+        let drawn = piece.drawn;
         self.pieces.push(piece);
         if let Cover::Samples(Some(outline)) = &cover {
-            return self.samples::<S, C, R>(simd, input, &bounds, outline, (centres, hides), area);
+            return self.samples::<S, C, R>(simd, input, &bounds, &mut rows, outline, drawn.then_some(centres), area);
         }
-        let mut masks = Masks::new(Ends::empty(simd), 0);
-        for y in first..beyond {
-            let mut row = Row { y, number: 0, met: [left, right], whole: [0; 2], centre: [0; 2], taken: [0; 2] };
-            row.met = match &cover {
-                Cover::Samples(_) if drawn => centres.on(y, row.met),
+        for (row, y) in rows.rows[..rows.count].iter_mut().zip(first..) {
+            let [from, to] = match &cover {
+                Cover::Samples(_) if drawn => centres.on(y, [left, right]),
                 Cover::Centres(triangle) => on_row_of(triangle, y),
-                Cover::Line(line) => on_row(line, y, row.met),
+                Cover::Line(line) => on_row(line, y, [left, right]),
                 Cover::Pixel([x, line]) if *line == y => [*x, x + 1],
-                Cover::All => row.met,
+                Cover::All => [left, right],
                 Cover::Nothing | Cover::Samples(_) | Cover::Pixel(_) => [0; 2],
             };
-            row.met = [row.met[0].max(left), row.met[1].min(right)];
+            row.met = [from.max(left), to.min(right)];
             match cover {
                 Cover::Samples(_) => row.centre = row.met,
                 _ => row.whole = row.met,
             }
-            self.row::<S, C, R>(simd, input, &bounds, &mut masks, row);
         }
-        self.make_masks::<S, C, R>(simd, input, hides);
+        Ends::empty(simd).slots::<C>(simd, 0, &mut self.runs.slots);
+        self.rows::<S, C, R>(simd, input, &bounds, &mut rows, |_, _, _, _| [0; 2]);
     }
 
     /// A triangle on rows of samples.
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "what its one caller has set up")]
     fn samples<S: Simd, const C: usize, const R: usize>(
         &mut self,
         simd: S,
         input: &Input<'_>,
         bounds: &Bounds<S>,
+        rows: &mut Rows,
         t: &Triangle,
-        (mut centres, hides): (Centres<'_>, bool),
+        centres: Option<Centres<'_>>,
         [[left, first], [right, beyond]]: [[i32; 2]; 2],
     ) {
-        let (columns, rows) = (C as i32, R as i32);
+        let (columns, height) = (C as i32, R as i32);
         let shift = C.ilog2();
         let limits = [left * columns, right * columns];
         let walks = Walks::new(simd, t);
-        let drawn = self.pieces.last().is_some_and(|piece| piece.drawn);
         // Its inside, where that covers the band from top to bottom.
-        let mut taken = [0; 2];
         if right - left >= WIDE && beyond - first == input.lines as i32 && input.setting.rule != Rule::InOrder {
             let row = |row: i32| walks.ends(simd, t, row, limits).first();
-            let (upper, lower) = (row(first * rows), row(beyond * rows - 1));
+            let (upper, lower) = (row(first * height), row(beyond * height - 1));
             let (from, to) = (upper[0].max(lower[0]), upper[1].min(lower[1]));
-            taken = self.take_chunks(input, [(from + columns - 1) >> shift, to >> shift]);
+            rows.taken = self.take_chunks(input, [(from + columns - 1) >> shift, to >> shift]);
         }
+        // Rows of pixels that are walked together.
         let step = LANES / R;
-        for y in (first..beyond).step_by(step) {
-            let ends = walks.ends(simd, t, y * rows, limits);
+        // The pixel that their slots count columns from: the first that is met.
+        let mut bases = [0; LINES];
+        let mut missed = 0_u32;
+        for place in (0..rows.count).step_by(step) {
+            let row = (first + place as i32) * height;
+            let ends = walks.ends(simd, t, row, limits);
             let pixels = ends.pixels::<C, R>();
-            let misses = if drawn { ends.misses(t, y * rows) } else { 0 };
-            let mut masks = Masks::new(ends, pixels.least::<C, R>());
-            for number in 0..step.min((beyond - y) as usize) {
-                let y = y + number as i32;
-                let (mut met, whole) = (pixels.met::<C, R>(number), pixels.whole::<R>(number));
-                let mut centre = [0; 2];
-                if misses >> (number * R + R / 2) & 1 != 0 {
-                    centre = centres.on(y, [left, right]);
-                    if centre[0] < centre[1] {
-                        met = [met[0].min(centre[0]), met[1].max(centre[1])];
-                    }
-                }
-                let row = Row { y, number, met, whole, centre, taken };
-                self.row::<S, C, R>(simd, input, bounds, &mut masks, row);
+            for (k, row) in rows.rows[place..place + step].iter_mut().enumerate() {
+                (row.met, row.whole) = (pixels.met::<C, R>(k), pixels.whole::<R>(k));
             }
-            if self.runs.are_many() || y + step as i32 >= beyond {
-                self.make_masks::<S, C, R>(simd, input, hides);
+            let misses = ends.misses(t, row);
+            for k in 0..step {
+                missed |= (misses >> (k * R + R / 2) & 1) << (place + k);
+            }
+            let base = rows.rows[place..place + step].iter().fold(right, |base, row| base.min(row.met[0]));
+            bases[place / step] = base;
+            ends.slots::<C>(simd, base, &mut self.runs.slots);
+        }
+        if let Some(mut centres) = centres {
+            missed &= (1 << rows.count) - 1;
+            while missed != 0 {
+                let place = missed.trailing_zeros() as usize;
+                missed &= missed - 1;
+                let centre = centres.on(first + place as i32, [left, right]);
+                if centre[0] < centre[1] {
+                    let Row { met, .. } = rows.rows[place];
+                    rows.rows[place].met = [met[0].min(centre[0]), met[1].max(centre[1])];
+                    rows.rows[place].centre = centre;
+                }
             }
         }
+        let mut made = [(usize::MAX, 0, 0); 2];
+        self.rows::<S, C, R>(simd, input, bounds, rows, |slots, place, x, [from, last]| {
+            let (batch, number) = (place / step, place / Slot::rows(C, R));
+            let base = bases[batch];
+            // A centre may lie before what samples meet.
+            if from >= base && last - base < REACH {
+                return [number as u32, (x.wrapping_sub(base) * columns) as u32];
+            }
+            // Both sides of some rows need one.
+            if (made[0].0, made[0].1) != (batch, x) {
+                made.swap(0, 1);
+                if (made[0].0, made[0].1) != (batch, x) {
+                    made[0] = (batch, x, slots.len());
+                    let ends = walks.ends(simd, t, (first + (batch * step) as i32) * height, limits);
+                    ends.slots::<C>(simd, x, slots);
+                }
+            }
+            [(made[0].2 + number % (C / 4)) as u32, 0]
+        });
     }
 }
 

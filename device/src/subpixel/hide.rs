@@ -9,7 +9,7 @@
 //! Inputs from: [`super::cover`]. Outputs to: [`super::band`].
 
 use super::band::{Input, Work};
-use super::row::Bounds;
+use super::rows::Bounds;
 use crate::hidden::z_buffer::kernel::{LANE, LANES};
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, i32x16, u32x16};
@@ -107,7 +107,12 @@ impl Work {
         let owner = std::mem::replace(owner, OPEN);
         let x = chunk * LANES;
         let columns = (input.setting.size[0] as usize - x).min(LANES);
-        let Depths { far, near, second } = &mut self.depths[line * input.chunks() + chunk];
+        let depths = &mut self.depths[line * input.chunks() + chunk];
+        if let (UNTOUCHED, LANES, Some(base)) = (owner, columns, input.base_depth()) {
+            *depths = Depths { far: [base; LANES], near: [base; LANES], ..Depths::ALL };
+            return;
+        }
+        let Depths { far, near, second } = depths;
         if owner == UNTOUCHED {
             match input.base_depth() {
                 Some(base) => far.fill(base),
@@ -116,9 +121,9 @@ impl Work {
             *near = *far;
         } else {
             let bounds = Bounds::new(simd, input, &self.pieces[owner as usize]);
-            let depths = bounds.of(simd, bounds.value(x as i32, input.top + line as i32));
-            depths[0].store_slice(near);
-            depths[1].store_slice(far);
+            let [nearest, farthest] = bounds.of(simd, bounds.value(x as i32, input.top + line as i32));
+            nearest.store_slice(near);
+            farthest.store_slice(far);
         }
         far[columns..].fill(BEYOND);
         near[columns..].fill(BEYOND);

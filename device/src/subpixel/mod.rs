@@ -17,7 +17,7 @@
 //! | [`band`] | a band from items to resolved pixels, from the nearest item to the farthest |
 //! | `cover` | what an item covers, row by row |
 //! | `walk` | its edges on rows of samples: which pixels it meets, masks |
-//! | `row` | one row of it: what is seen, and hides |
+//! | `rows` | its rows: what of them is seen, and hides |
 //! | `runs` | what it covers in part becomes fragments |
 //! | `hide` | what is hidden already, and by what covers whole pixels |
 //! | `lists` | fragments by pixel, in bounded memory |
@@ -60,7 +60,7 @@ pub mod map;
 mod parts;
 pub mod piece;
 pub mod pixel;
-mod row;
+mod rows;
 mod runs;
 pub mod scene;
 pub mod search;

@@ -11,9 +11,6 @@ use crate::hidden::z_buffer::kernel::LANES;
 use fearless_simd::Simd;
 use std::hint::select_unpredictable;
 
-/// Chunks from which on it is time to make masks.
-pub(super) const MANY: usize = 48;
-
 /// Pixels of a chunk that a piece covers in part.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
@@ -27,8 +24,10 @@ pub(super) struct Run {
     pub(super) pixels: u32,
     /// Those that are fragments even without a mask.
     pub(super) centres: u32,
-    /// What their masks come from; [`super::walk::Masks::place`].
-    pub(super) place: [u32; 3],
+    /// What their masks come from: a slot, the row in it, and the first pixel's column, modulo 256.
+    pub(super) slot: u32,
+    pub(super) number: u32,
+    pub(super) column: u32,
     /// The first one's bit among those of the active pixels.
     pub(super) active: u32,
 }
@@ -65,11 +64,6 @@ impl Runs {
         fill(run);
         self.count += usize::from(run.pixels != 0);
     }
-
-    /// Whether there are many.
-    pub(super) fn are_many(&self) -> bool {
-        self.count >= MANY
-    }
 }
 
 impl Work {
@@ -93,10 +87,9 @@ impl Work {
                 let rest = left & (left - 1);
                 place += usize::from(rest == 0);
                 left = select_unpredictable(rest == 0, runs[place].pixels, rest);
-                let [slot, shift, column] = run.place;
-                let column = column + (lane * C) as u32;
-                let mask = self.runs.slots[slot as usize].mask::<S, C, R>(simd, shift, column);
-                let keep = mask != 0 || (run.centres >> lane) & 1 != 0;
+                let column = run.column.wrapping_add((lane * C) as u32);
+                let mask = self.runs.slots[run.slot as usize].mask::<S, C, R>(simd, run.number as usize, column);
+                let keep = (mask != 0) | ((run.centres >> lane) & 1 != 0);
                 let fragment = Fragment::new(mask, piece, [run.near[lane], run.far[lane]]);
                 let limit = &mut self.depths[run.at as usize].far[lane];
                 self.lists.put_opaque(run.at as usize * LANES + lane, fragment, [keep, hides], full, limit);

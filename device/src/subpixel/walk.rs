@@ -2,7 +2,7 @@
 //!
 //! Duties: from a triangle's edges the columns that its rows of samples begin and end with; from those, for the 2 or 4
 //! rows of pixels that they are, which pixels are met, which are covered wholly, and the masks of the others. Inputs
-//! from: [`super::piece`]. Outputs to: [`super::cover`], [`super::row`]. Clocks: those of masks are counted when it is
+//! from: [`super::piece`]. Outputs to: [`super::cover`], [`super::rows`]. Clocks: those of masks are counted when it is
 //! known what is left ([`super::band`]).
 
 use crate::geometry::triangle::Triangle;
@@ -122,12 +122,6 @@ impl Pixels {
         [self.outer[k] >> shift, (C as i32 - 1 - self.outer[k + LANES / R]) >> shift]
     }
 
-    /// The first pixel that is met on any row.
-    #[inline(always)]
-    pub(super) fn least<const C: usize, const R: usize>(&self) -> i32 {
-        self.outer[1..LANES / R].iter().fold(self.outer[0], |least, &column| least.min(column)) >> C.ilog2()
-    }
-
     /// Those that are covered wholly.
     #[inline(always)]
     pub(super) fn whole<const R: usize>(&self, k: usize) -> [i32; 2] {
@@ -136,7 +130,7 @@ impl Pixels {
 }
 
 /// Pixels that a [`Slot`] reaches: their columns of samples count to less than 255.
-const REACH: i32 = 31;
+pub(super) const REACH: i32 = 31;
 
 /// What all samples of some rows of pixels are told from: each has a lane of 8 bits, lane k is bit k of a mask.
 #[derive(Clone, Copy, Debug)]
@@ -146,44 +140,12 @@ pub(super) struct Slot {
     ends: [[u8; 64]; 2],
 }
 
-/// Where the masks of the pixels on rows that are walked together come from.
-pub(super) struct Masks<S: Simd> {
-    ends: Ends<S>,
-    /// No row begins before this pixel.
-    least: i32,
-    /// The pixel that columns are counted from.
-    base: i32,
-    /// The slot of the first rows.
-    first: usize,
-}
-
-impl<S: Simd> Masks<S> {
-    /// Masks of rows none of which begins before pixel `least`.
+impl<S: Simd> Ends<S> {
+    /// Adds slots for [`REACH`] pixels from `base` on.
     #[inline(always)]
-    pub(super) fn new(ends: Ends<S>, least: i32) -> Self {
-        Masks { ends, least, base: i32::MAX, first: 0 }
-    }
-
-    /// Sees to it that there are slots for pixels `from..=to`, of one chunk.
-    #[inline(always)]
-    pub(super) fn reach<const C: usize>(&mut self, simd: S, slots: &mut Vec<Slot>, [from, to]: [i32; 2]) {
-        if from >= self.base && to - self.base < REACH {
-            return;
-        }
-        self.base = if to - self.least < REACH { self.least.min(from) } else { from };
-        self.first = slots.len();
-        let base = i32x16::splat(simd, self.base * C as i32);
-        let lanes = |columns: i32x16<S>| -> [u8x64<S>; 2] {
-            // Lane 0 is a sample of the last row.
-            let columns: u32x16<S> = (columns - base).max(0).min(255).reverse().bitcast();
-            let four = columns * 0x0101_0101;
-            if C == 8 {
-                [four.zip_high(four).bitcast(), four.zip_low(four).bitcast()]
-            } else {
-                [four.bitcast(), four.bitcast()]
-            }
-        };
-        let (from, to) = (lanes(self.ends.from), lanes(self.ends.to));
+    pub(super) fn slots<const C: usize>(&self, simd: S, base: i32, slots: &mut Vec<Slot>) {
+        let base = i32x16::splat(simd, base * C as i32);
+        let (from, to) = (in_bytes::<S, C>(self.from - base), in_bytes::<S, C>(self.to - base));
         for k in 0..C / 4 {
             let mut slot = Slot { ends: [[0; 64]; 2] };
             from[k].store_slice(&mut slot.ends[0]);
@@ -191,21 +153,29 @@ impl<S: Simd> Masks<S> {
             slots.push(slot);
         }
     }
+}
 
-    /// For the pixels from `x` on of row `number`, if they are reached: the slot, the place of a pixel's mask in its
-    /// lanes, and the column, modulo 256.
-    #[inline(always)]
-    pub(super) fn place<const C: usize, const R: usize>(&self, number: usize, x: i32) -> [u32; 3] {
-        let rows = 64 / (C * R);
-        let shift = (rows - 1 - number % rows) * C * R;
-        [(self.first + number / rows) as u32, shift as u32, (x.wrapping_sub(self.base) * C as i32) as u32]
-    }
+/// Columns of rows of samples as a lane each sample has, lane 0 is one of the last row.
+#[inline(always)]
+fn in_bytes<S: Simd, const C: usize>(columns: i32x16<S>) -> [u8x64<S>; 2] {
+    let columns: u32x16<S> = columns.max(0).min(255).reverse().bitcast();
+    let four = columns * 0x0101_0101;
+    if C == 8 { [four.zip_high(four).bitcast(), four.zip_low(four).bitcast()] } else { [four.bitcast(), four.bitcast()] }
 }
 
 impl Slot {
-    /// Samples that are covered of the pixel in a place, as [`Masks::place`] has it for the first of `lane`.
+    /// Rows of pixels of a slot.
     #[inline(always)]
-    pub(super) fn mask<S: Simd, const C: usize, const R: usize>(&self, simd: S, shift: u32, column: u32) -> u64 {
+    pub(super) const fn rows(columns: usize, rows: usize) -> usize {
+        64 / (columns * rows)
+    }
+
+    /// Samples that are covered of a pixel on row `number` of those that are walked together, by its first column,
+    /// counted as the slot's are; modulo 256.
+    #[inline(always)]
+    pub(super) fn mask<S: Simd, const C: usize, const R: usize>(&self, simd: S, number: usize, column: u32) -> u64 {
+        let rows = Slot::rows(C, R);
+        let shift = (rows - 1 - number % rows) * C * R;
         let samples: [u8; 64] = std::array::from_fn(|lane| (C - 1 - lane % C) as u8);
         let columns = u8x64::from_slice(simd, &samples) + column as u8;
         let [from, to] = &self.ends;
@@ -216,6 +186,6 @@ impl Slot {
 
 /// As many bits as `count`, at most 16.
 #[inline(always)]
-pub(super) fn low_bits(count: i32) -> u32 {
+fn low_bits(count: i32) -> u32 {
     (1 << count.clamp(0, LANES as i32)) - 1
 }
