@@ -276,16 +276,20 @@ impl Pixels {
     ) {
         self.early.clear();
         self.early.resize(self.fragments.len(), Early::default());
-        self.ask_of(briefs, rings, |brief, _| brief.holes);
-        self.questions.answer(level, Question::Hole, shader, source, Some(counts));
-        for (&number, &answer) in self.asking.iter().zip(&self.questions.answers) {
-            self.early[number as usize].hole = answer != 0;
+        if briefs.iter().any(|brief| brief.holes) {
+            self.ask_of(briefs, rings, |brief, _| brief.holes);
+            self.questions.answer(level, Question::Hole, shader, source, Some(counts));
+            for (&number, &answer) in self.asking.iter().zip(&self.questions.answers) {
+                self.early[number as usize].hole = answer != 0;
+            }
         }
-        self.ask_of(briefs, rings, |brief, layers| layers || (brief.layer && brief.blend));
-        // Which of them are used is known later.
-        self.questions.answer(level, Question::Colour, shader, source, None);
-        for (&number, &answer) in self.asking.iter().zip(&self.questions.answers) {
-            self.early[number as usize].colour = Some(answer);
+        if briefs.iter().any(|brief| brief.layer && brief.blend) {
+            self.ask_of(briefs, rings, |_, layers| layers);
+            // Which of them are used is known later.
+            self.questions.answer(level, Question::Colour, shader, source, None);
+            for (&number, &answer) in self.asking.iter().zip(&self.questions.answers) {
+                self.early[number as usize].colour = Some(answer);
+            }
         }
     }
 

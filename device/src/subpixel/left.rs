@@ -68,6 +68,8 @@ struct Cover {
     all: u64,
     /// By two or more.
     twice: u64,
+    /// By those that hide.
+    solid: u64,
     /// One of them covers no sample, or hides nothing.
     odd: bool,
     /// The farthest of them.
@@ -77,12 +79,14 @@ struct Cover {
 impl Cover {
     #[inline(always)]
     fn new(work: &Work, list: &[Fragment]) -> Cover {
-        let mut cover = Cover { all: 0, twice: 0, odd: false, far: i32::MIN };
+        let mut cover = Cover { all: 0, twice: 0, solid: 0, odd: false, far: i32::MIN };
         for fragment in list {
             cover.twice |= cover.all & fragment.mask;
             cover.all |= fragment.mask;
             cover.far = cover.far.max(fragment.far);
-            cover.odd |= fragment.mask == 0 || work.briefs[fragment.piece as usize].layer;
+            let layer = work.briefs[fragment.piece as usize].layer;
+            cover.solid |= if layer { 0 } else { fragment.mask };
+            cover.odd |= fragment.mask == 0 || layer;
         }
         cover
     }
@@ -98,14 +102,17 @@ impl Cover {
         if self.all != full {
             return base;
         }
-        list.sort_unstable_by_key(|fragment| fragment.far);
-        let mut union = 0;
-        let opaque = list.iter().filter(|fragment| !work.briefs[fragment.piece as usize].layer);
-        let limit = opaque.into_iter().find_map(|fragment| {
-            union |= fragment.mask;
-            (union == full).then_some(fragment.far)
-        });
-        let limit = limit.map_or(base, |limit| limit.min(base));
+        let mut limit = base;
+        if self.solid == full {
+            list.sort_unstable_by_key(|fragment| fragment.far);
+            let mut union = 0;
+            let solid = list.iter().filter(|fragment| !work.briefs[fragment.piece as usize].layer);
+            let completes = solid.into_iter().find(|fragment| {
+                union |= fragment.mask;
+                union == full
+            });
+            limit = completes.map_or(base, |fragment| fragment.far.min(base));
+        }
         list.retain(|fragment| fragment.near <= limit);
         *self = Cover::new(work, list);
         limit
