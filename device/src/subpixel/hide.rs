@@ -43,7 +43,8 @@ pub(super) struct Depths {
 
 impl Depths {
     /// Pixels in which everything is seen.
-    pub(super) const ALL: Depths = Depths { far: [i32::MAX; LANES], near: [i32::MAX; LANES], second: [i32::MAX; LANES] };
+    pub(super) const ALL: Depths =
+        Depths { far: [i32::MAX; LANES], near: [i32::MAX; LANES], second: [i32::MAX; LANES] };
 }
 
 /// The farthest depth that is seen beyond the right edge of the target: nothing is.

@@ -43,12 +43,8 @@ struct Link {
 }
 
 /// The end of all lists.
-const END: Link = Link {
-    fragment: Fragment { mask: 0, piece: 0, near: 0, far: 0, next: 0 },
-    union: 0,
-    far: i32::MIN,
-    count: 0,
-};
+const END: Link =
+    Link { fragment: Fragment { mask: 0, piece: 0, near: 0, far: 0, next: 0 }, union: 0, far: i32::MIN, count: 0 };
 
 /// Fragments of a thread at most, but for those of one pixel: 10 MiB.
 const MOST: usize = 1 << 18;
@@ -83,7 +79,7 @@ impl Lists {
         self.full |= self.used - 1 + more > self.limit;
         // One more, for what is not kept.
         if !self.full && self.used + more >= self.links.len() {
-            self.links.resize(2 * (self.used + more + 1), END);
+            self.links.resize((2 * (self.used + more + 1)).min(self.limit + 2), END);
         }
         !self.full
     }
