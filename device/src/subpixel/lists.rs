@@ -79,7 +79,7 @@ impl Lists {
         self.full |= self.used - 1 + more > self.limit;
         // One more, for what is not kept.
         if !self.full && self.used + more >= self.links.len() {
-            self.links.resize(2 * (self.used + more + 1), END);
+            self.links.resize((2 * (self.used + more + 1)).min(self.limit + 2), END);
         }
         !self.full
     }

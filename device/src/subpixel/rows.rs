@@ -148,7 +148,7 @@ impl Work {
             let centres = inside(columns, row.centre).to_bitmask() as u32;
             let x = x as i32;
             let reach = [row.met[0].max(x), (row.met[1] - 1).min(x + LANES as i32 - 1)];
-            let [slot, column] = slots(&mut self.runs.slots, number, x, reach);
+            let [slot, column] = if parts != 0 { slots(&mut self.runs.slots, number, x, reach) } else { [0; 2] };
             let active = (line * input.words() * 64) as u32 + x as u32;
             self.runs.push(|run: &mut Run| {
                 near.store_slice(&mut run.near);

@@ -2,7 +2,7 @@
 //!
 //! Duties: of a chunk's pixels that may be seen those are kept that have a mask, as fragments. All of a triangle's chunks
 //! are gone through at once, without a branch on what is found: how many pixels of a chunk are covered in part, and
-//! which of them at all, no predictor knows. Inputs from: [`super::row`]. Outputs to: [`super::lists`]. Clocks: none.
+//! which of them at all, no predictor knows. Inputs from: [`super::rows`]. Outputs to: [`super::lists`]. Clocks: none.
 
 use super::band::{Input, Work};
 use super::lists::Fragment;

@@ -85,8 +85,11 @@ impl<S: Simd> Ends<S> {
         let fours = pairs.unzip_low(pairs).min(pairs.unzip_high(pairs));
         let outer = if R == 8 { fours.unzip_low(fours).min(fours.unzip_high(fours)) } else { fours };
         // The left border is convex and the right one concave: what all rows cover, the first and the last do.
-        let [last_from, last_to] =
-            if R == 8 { [from.slide::<7>(from), to.slide::<7>(to)] } else { [from.slide::<3>(from), to.slide::<3>(to)] };
+        let [last_from, last_to] = if R == 8 {
+            [from.slide::<7>(from), to.slide::<7>(to)]
+        } else {
+            [from.slide::<3>(from), to.slide::<3>(to)]
+        };
         let mut pixels = Pixels { outer: [0; LANES], inner: [[0; LANES]; 2] };
         outer.store_slice(&mut pixels.outer);
         ((from.max(last_from) + (C as i32 - 1)) >> C.ilog2()).store_slice(&mut pixels.inner[0]);
@@ -160,7 +163,11 @@ impl<S: Simd> Ends<S> {
 fn in_bytes<S: Simd, const C: usize>(columns: i32x16<S>) -> [u8x64<S>; 2] {
     let columns: u32x16<S> = columns.max(0).min(255).reverse().bitcast();
     let four = columns * 0x0101_0101;
-    if C == 8 { [four.zip_high(four).bitcast(), four.zip_low(four).bitcast()] } else { [four.bitcast(), four.bitcast()] }
+    if C == 8 {
+        [four.zip_high(four).bitcast(), four.zip_low(four).bitcast()]
+    } else {
+        [four.bitcast(), four.bitcast()]
+    }
 }
 
 impl Slot {

@@ -4,12 +4,30 @@
 //! | --- | --- |
 //! | `grid` | samples, bits and places against the manual's numbers |
 //! | `hide` | what chunks that one piece covers from top to bottom of a band leave to be done |
+//! | `lists` | order, limits and room of lists |
+//! | `rows` | bounds of the depths of a chunk against those of its pixels |
 //! | `scene` | what a scene takes, and by which rule its opaque fragments are ordered |
 //! | `search` | bands, ends and steps against the definition; start corners; where the search is exact, and where not |
 //! | `search_clocked` | registers and clocks against the functional search |
+//! | `walk` | what rows of samples meet and cover, and masks, against edge functions |
 
 mod grid;
 mod hide;
+mod lists;
+mod rows;
 mod scene;
 mod search;
 mod search_clocked;
+mod walk;
+
+use fearless_simd::Level;
+
+/// The SIMD levels below the best one of this host.
+fn levels() -> Vec<Level> {
+    let best = Level::new();
+    #[cfg(target_arch = "x86_64")]
+    let below = [best.as_avx2().map(Level::Avx2), best.as_sse4_2().map(Level::Sse4_2), best.as_sse2().map(Level::Sse2)];
+    #[cfg(not(target_arch = "x86_64"))]
+    let below = [best.is_fallback().then_some(best)];
+    below.into_iter().flatten().collect()
+}
