@@ -370,7 +370,6 @@ impl Work {
         self.open_pixels(input);
         let mut list = std::mem::take(&mut self.list);
         self.each_active(input, |work, at, place| {
-            list.clear();
             work.lists.take(at, &mut list);
             if let Some(apart) = left::keep(work, input, &mut list, place) {
                 work.take_up(input, &list, place, apart, out, counts);

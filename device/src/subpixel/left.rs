@@ -20,12 +20,7 @@ const FEW: usize = 16;
 /// Drops the fragments that are hidden, and puts the others in order of submission. `None` if the pixel in column `x` of
 /// line `line` is not active, else whether no sample of it is covered twice.
 #[inline(always)]
-pub(super) fn keep(
-    work: &Work,
-    input: &Input<'_>,
-    list: &mut Vec<Fragment>,
-    [x, line]: [usize; 2],
-) -> Option<bool> {
+pub(super) fn keep(work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, [x, line]: [usize; 2]) -> Option<bool> {
     // Most pixels have two fragments or three: loops over a known number have no end to be guessed.
     let mut cover = match &list[..] {
         [] => return None,

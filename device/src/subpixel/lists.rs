@@ -123,9 +123,10 @@ impl Lists {
         self.used += usize::from(keep);
     }
 
-    /// Moves the fragments of a pixel to the end of `list`, those found last first.
+    /// Moves the fragments of a pixel to `list`, those found last first.
     #[inline(always)]
     pub(super) fn take(&mut self, at: usize, list: &mut Vec<Fragment>) {
+        list.clear();
         let mut next = std::mem::take(&mut self.places[at]) as usize;
         for _ in 0..self.links[next].count {
             let fragment = self.links[next].fragment;

@@ -25,9 +25,15 @@
 //! | [`specification`] | the same by definition, pixel by pixel |
 //! | [`search`](mod@search) | the nearest or the farthest sub-pixel of a mask |
 //! | [`search_clocked`] | the same as registers and clocks |
-//! | [`pixel`] | one pixel: its fragments are ordered, merged, packed and averaged |
-//! | `parts` | which opaque fragment is seen at each sample; the mean |
+//! | `brief` | what is asked of a piece for every fragment |
+//! | `finish` | the active pixels of a band, from their fragments to their colours |
+//! | [`pixel`] | one pixel: its fragments are ordered, merged, packed |
+//! | `parts` | which opaque fragment is seen at each sample |
+//! | `compare` | depths of two planes at all samples of a pixel |
 //! | `layers` | translucent fragments over them |
+//! | `shares` | so many samples of one colour; the mean |
+//! | `waiting` | pixels that wait for what colours decide: holes, layers |
+//! | `queue` | what is asked at places, found piece by piece |
 //! | `shader` | colours of fragments |
 //! | [`gamma`] | linear light |
 //! | [`unit`] | bands on threads; writes the frame |
@@ -60,16 +66,19 @@ pub mod map;
 mod parts;
 pub mod piece;
 pub mod pixel;
+mod queue;
 mod rows;
 mod runs;
 pub mod scene;
 pub mod search;
 pub mod search_clocked;
 mod shader;
+mod shares;
 pub mod specification;
 #[cfg(test)]
 mod tests;
 pub mod unit;
+mod waiting;
 mod walk;
 
 use crate::probe::account::{Account, Clocks};

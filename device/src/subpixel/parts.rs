@@ -3,7 +3,6 @@
 //! What each test, range and merge means is told in [`super::pixel`].
 
 use super::brief::Brief;
-use super::finish::Shares;
 use super::grid::Offset;
 use super::layers::{Class, Layer, LayerDepths, Run};
 use super::lists::Fragment;
@@ -11,6 +10,7 @@ use super::piece::{Piece, Sampled};
 use super::pixel::{Pixel, samples};
 use super::scene::{ItemDraw, Kind, Rule};
 use super::search::{self, DepthRange, Extreme};
+use super::shares::Shares;
 use super::{Counts, Setting, compare, search_clocked};
 use crate::hidden::z_buffer::DepthTest;
 use zga_abi::format::SubpixelDepth;

@@ -23,7 +23,6 @@
 //! farthest to the nearest over each part; where their ranges overlap, sample by sample.
 
 use super::brief::Brief;
-use super::finish::{Early, Shares};
 use super::gamma::Space;
 use super::layers::Layer;
 use super::lists::Fragment;
@@ -32,6 +31,8 @@ use super::parts::{Depths, Resolver};
 use super::piece::{Piece, Sampled};
 use super::scene::ItemDraw;
 use super::shader::{Rings, Source};
+use super::shares::Shares;
+use super::waiting::Early;
 use super::{Counts, Setting, search};
 use fearless_simd::Level;
 use zga_abi::format::BlendMode;

@@ -10,44 +10,13 @@
 //! and what it goes through beyond that ([`crate::shading::pixel`]).
 
 use super::grid::Grid;
-use super::lists::Fragment;
 use super::piece::Piece;
 use super::scene::ItemDraw;
-use super::{Counts, search};
+use super::search;
 use crate::hidden::z_buffer::kernel::LANES;
 use crate::shading::plane::ColourPlane;
 use crate::shading::scattered::{self, Places, centre_of};
 use fearless_simd::{Level, Simd, dispatch};
-
-/// A place at which a piece is asked for something.
-#[derive(Clone, Copy, Debug)]
-struct Asked {
-    /// Twice the number of the piece, and 1 if the place is a pixel's centre.
-    key: u32,
-    /// u.
-    place: [i32; 2],
-}
-
-/// What is asked for at places, and the answers in the same order.
-#[derive(Debug, Default)]
-pub(super) struct Queue {
-    asked: Vec<Asked>,
-    /// Colours; or 1 where there is a hole, else 0.
-    pub(super) answers: Vec<u32>,
-    /// Numbers of what is asked, piece by piece.
-    order: Vec<u32>,
-    /// Where those of each key begin.
-    starts: Vec<u32>,
-}
-
-/// What a queue asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Question {
-    /// Colours.
-    Colour,
-    /// Whether there is a hole.
-    Hole,
-}
 
 /// What colours are found in.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +65,7 @@ impl Rings {
 
     /// Where a fragment of pixel (`x`, `y`) has its colour, in u; `None` is the pixel's centre. It covers a sample.
     #[inline(always)]
-    fn place_of(&self, mask: u64, [x, y]: [i32; 2]) -> Option<[i32; 2]> {
+    pub(super) fn place_of(&self, mask: u64, [x, y]: [i32; 2]) -> Option<[i32; 2]> {
         // What covers the four samples about the centre covers the centre.
         let inner = self.masks[0];
         if mask & inner == inner {
@@ -115,93 +84,8 @@ impl Rings {
 }
 
 impl Source<'_> {
-    fn draw(&self, piece: u32) -> &ItemDraw {
+    pub(super) fn draw(&self, piece: u32) -> &ItemDraw {
         &self.draws[self.pieces[piece as usize].draw as usize]
-    }
-}
-
-impl Queue {
-    /// Forgets everything.
-    pub(super) fn clear(&mut self) {
-        self.asked.clear();
-        self.answers.clear();
-    }
-
-    /// Asks for a fragment's place in pixel (`x`, `y`); returns the number of the answer.
-    #[inline(always)]
-    pub(super) fn ask(&mut self, rings: &Rings, fragment: &Fragment, [x, y]: [i32; 2]) -> u32 {
-        let (key, place) = match rings.place_of(fragment.mask, [x, y]) {
-            None => (2 * fragment.piece + 1, centre_of(x, y)),
-            Some(place) => (2 * fragment.piece, place),
-        };
-        self.asked.push(Asked { key, place });
-        self.asked.len() as u32 - 1
-    }
-
-    /// Puts the numbers of what is asked in order of their pieces.
-    fn sort(&mut self, pieces: usize) {
-        self.starts.clear();
-        self.starts.resize(2 * pieces + 1, 0);
-        for asked in &self.asked {
-            self.starts[asked.key as usize + 1] += 1;
-        }
-        for key in 1..self.starts.len() {
-            self.starts[key] += self.starts[key - 1];
-        }
-        self.order.resize(self.asked.len(), 0);
-        for (number, asked) in (0..).zip(&self.asked) {
-            let start = &mut self.starts[asked.key as usize];
-            self.order[*start as usize] = number;
-            *start += 1;
-        }
-    }
-
-    /// Answers everything; the events of that go to `counts`.
-    pub(super) fn answer(
-        &mut self,
-        level: Option<Level>,
-        question: Question,
-        shader: &mut Shader,
-        source: Source<'_>,
-        mut counts: Option<&mut Counts>,
-    ) {
-        self.answers.resize(self.asked.len(), 0);
-        self.sort(source.pieces.len());
-        let order = std::mem::take(&mut self.order);
-        for group in order.chunk_by(|&a, &b| self.asked[a as usize].key == self.asked[b as usize].key) {
-            let key = self.asked[group[0] as usize].key;
-            let (piece, at_centre) = (key / 2, key % 2 == 1);
-            let mut found = 0;
-            for numbers in group.chunks(LANES) {
-                let mut at: Places = [[0; LANES]; 2];
-                for lane in 0..LANES {
-                    // Lanes beyond the last repeat the first.
-                    let number = numbers.get(lane).unwrap_or(&numbers[0]);
-                    let [x, y] = self.asked[*number as usize].place;
-                    (at[0][lane], at[1][lane]) = (x, y);
-                }
-                let wanted = u16::MAX >> (LANES - numbers.len());
-                let answers = match question {
-                    Question::Colour => shader.colours(level, source, piece, at_centre, &at, wanted),
-                    Question::Hole => shader.holes(level, source, piece, &at, wanted),
-                };
-                for (number, answer) in numbers.iter().zip(answers) {
-                    self.answers[*number as usize] = answer;
-                    found += u64::from(answer);
-                }
-            }
-            let Some(counts) = &mut counts else {
-                continue;
-            };
-            match (question, &source.draw(piece).shading) {
-                (Question::Colour, _) => counts.shade(source.draw(piece), group.len() as u64),
-                (Question::Hole, None) => {}
-                (Question::Hole, Some(shading)) => {
-                    counts.shading = counts.shading.plus(shading.pixel.looked_up(group.len() as u64, found));
-                }
-            }
-        }
-        self.order = order;
     }
 }
 
@@ -213,7 +97,7 @@ impl Shader {
         self.place.resize(pieces, 0);
     }
 
-    /// Makes sure that a piece has its plane; returns the plane's place.
+    /// The plane of a piece, made when it is first asked for.
     #[inline(always)]
     fn plane(&mut self, source: Source<'_>, piece: u32) -> &ColourPlane {
         let place = &mut self.place[piece as usize];
@@ -226,24 +110,22 @@ impl Shader {
 
     /// Colour of a piece at a place, a pixel's centre or another.
     fn colour_at(&mut self, source: Source<'_>, piece: u32, at_centre: bool, place: [i32; 2]) -> u32 {
-        let interpolation = source.draw(piece).interpolation;
-        let shaded = source.draw(piece).shading.is_some();
-        let colours = &source.pieces[piece as usize].source;
         if at_centre {
             return self.plane(source, piece).colour(place[0] >> 8, place[1] >> 8);
         }
-        let colour = colours.colour_at(place, interpolation);
-        match shaded {
-            false => colour,
-            true => match self.plane(source, piece) {
-                ColourPlane::Shaded(both) => both.1.colour(colour, place),
-                ColourPlane::Interpolated(_) => colour,
-            },
+        let draw = source.draw(piece);
+        let colour = source.pieces[piece as usize].source.colour_at(place, draw.interpolation);
+        if draw.shading.is_none() {
+            return colour;
+        }
+        match self.plane(source, piece) {
+            ColourPlane::Shaded(both) => both.1.colour(colour, place),
+            ColourPlane::Interpolated(_) => colour,
         }
     }
 
     /// Colours of a piece at 16 places, all of them centres or none; those not wanted mean nothing.
-    fn colours(
+    pub(super) fn colours(
         &mut self,
         level: Option<Level>,
         source: Source<'_>,
@@ -254,7 +136,10 @@ impl Shader {
     ) -> [u32; LANES] {
         match level {
             Some(level) => dispatch!(level, simd => self.lanes(simd, source, piece, at_centre, at, wanted)),
-            None => std::array::from_fn(|lane| self.colour_at(source, piece, at_centre, [at[0][lane], at[1][lane]])),
+            None => std::array::from_fn(|lane| match wanted >> lane & 1 {
+                0 => 0,
+                _ => self.colour_at(source, piece, at_centre, [at[0][lane], at[1][lane]]),
+            }),
         }
     }
 
@@ -284,7 +169,7 @@ impl Shader {
     }
 
     /// Which of 16 places are holes of a piece's texture: 1, else 0.
-    fn holes(
+    pub(super) fn holes(
         &mut self,
         level: Option<Level>,
         source: Source<'_>,

@@ -36,13 +36,13 @@ fn taken(lists: &mut Lists, at: usize) -> Vec<(u32, u64)> {
 }
 
 #[test]
-fn take_gives_a_pixels_fragments_in_the_order_in_which_they_were_put() {
+fn take_gives_a_pixels_fragments_the_last_first() {
     let mut lists = lists(100);
     assert!(lists.has_room(5));
     for (at, piece) in [(3, 0), (3, 1), (9, 2), (3, 3), (3, 4)] {
         lists.put(at, Fragment::new(1 << piece, piece, [0, 0]));
     }
-    assert_eq!(taken(&mut lists, 3), [(0, 1), (1, 2), (3, 8), (4, 16)]);
+    assert_eq!(taken(&mut lists, 3), [(4, 16), (3, 8), (1, 2), (0, 1)]);
     assert_eq!(taken(&mut lists, 3), [], "once");
     assert_eq!(taken(&mut lists, 9), [(2, 4)]);
     assert_eq!(taken(&mut lists, 4), []);
