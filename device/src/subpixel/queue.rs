@@ -93,12 +93,11 @@ impl Queue {
             let (piece, at_centre) = (key / 2, key % 2 == 1);
             let mut found = 0;
             for numbers in group.chunks(LANES) {
-                let mut at: Places = [[0; LANES]; 2];
-                for lane in 0..LANES {
-                    // Lanes beyond the last repeat the first.
-                    let number = numbers.get(lane).unwrap_or(&numbers[0]);
-                    let [x, y] = self.asked[*number as usize].place;
-                    (at[0][lane], at[1][lane]) = (x, y);
+                // Lanes beyond the last repeat the first.
+                let [x, y] = self.asked[numbers[0] as usize].place;
+                let mut at: Places = [[x; LANES], [y; LANES]];
+                for (lane, &number) in numbers.iter().enumerate() {
+                    [at[0][lane], at[1][lane]] = self.asked[number as usize].place;
                 }
                 let wanted = u16::MAX >> (LANES - numbers.len());
                 let answers = match question {
