@@ -463,11 +463,17 @@ impl Pipeline {
     /// Transforms each vertex of a draw once.
     fn transform_shared(&mut self, fetch: &Fetch<'_>, transform: &Transform) {
         let count = fetch.vertices();
-        let vertex = |v: usize| transform.inside(&fetch.lit_vertex(v));
         self.shared.clear();
         match self.workers.pool_for(self.threads, count >= 2 * SHARE as usize) {
-            Some(pool) => pool.install(|| (0..count).into_par_iter().map(vertex).collect_into_vec(&mut self.shared)),
-            None => self.shared.extend((0..count).map(vertex)),
+            Some(pool) => {
+                let vertices = (0..count).into_par_iter().map(|v| transform.inside(&fetch.lit_vertex(v)));
+                pool.install(|| vertices.collect_into_vec(&mut self.shared));
+            }
+            // A closure of its own, in the loop: one that both ways share is a call a vertex, and a copy.
+            None => self.shared.extend((0..count).map(
+                #[inline(always)]
+                |v| transform.inside(&fetch.lit_vertex(v)),
+            )),
         }
     }
 }

@@ -34,8 +34,6 @@ pub const LINES: usize = 16;
 pub struct Work {
     /// Items of the band, set up.
     pub pieces: Vec<Piece>,
-    /// Their items' places in the scene: the order of submission.
-    pub(super) numbers: Vec<u32>,
     /// Of the specification: what each piece covers, and where at most: first column and row, first beyond.
     pub covers: Vec<(Cover, [[i32; 2]; 2])>,
     /// Fragments as they are found.
@@ -254,7 +252,6 @@ impl Work {
     /// Empties everything.
     fn begin(&mut self, input: &Input<'_>) {
         self.pieces.clear();
-        self.numbers.clear();
         self.spans.clear();
         self.lists.begin(input);
         self.runs.clear();
@@ -289,7 +286,6 @@ impl Work {
             }
             let item = &scene.items[number as usize];
             let draw = &scene.draws[item.draw as usize];
-            self.numbers.push(number);
             let piece = Piece::new(input.setting, number, item, draw, input.top);
             self.cover::<S, C, R>(simd, input, piece, [from, to]);
             if self.lists.is_full() {
