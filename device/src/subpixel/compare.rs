@@ -71,6 +71,7 @@ fn depths<const C: usize, const R: usize>(grid: Grid, sampled: &Sampled, depths:
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::levels;
     use super::*;
     use proptest::prelude::*;
 
@@ -97,7 +98,7 @@ mod tests {
                 test.passes(new.depth(at), stored.depth(at))
             });
             let single: u64 = single.map(|sample| grid.sample_bit(sample)).sum();
-            for level in [Level::new(), Level::baseline()] {
+            for level in levels().into_iter().chain([Level::new()]) {
                 prop_assert_eq!(passing(level, grid, test, &new, &stored), single);
             }
         }

@@ -6,7 +6,7 @@
 //! that one span covers keeps its piece's number, and so do the chunks below one another that one piece covers on all
 //! lines of the band: the inside of a surface costs a word for sixteen lines of sixteen pixels.
 //!
-//! Inputs from: [`super::cover`]. Outputs to: [`super::band`].
+//! Inputs from: [`super::cover`], [`super::rows`]. Outputs to: [`super::band`].
 
 use super::band::{Input, Work};
 use super::rows::Bounds;

@@ -6,7 +6,7 @@
 //! Colours are asked for first, and found piece by piece, 16 at a time: the fragments of a piece share its planes, wherever
 //! they lie.
 //!
-//! Inputs from: [`super::pixel`]. Outputs to: [`super::finish`]. Clocks: 1 an interpolated colour, of the shading unit,
+//! Inputs from: [`super::queue`]. Outputs to: the same. Clocks: 1 an interpolated colour, of the shading unit,
 //! and what it goes through beyond that ([`crate::shading::pixel`]).
 
 use super::grid::Grid;

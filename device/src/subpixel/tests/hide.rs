@@ -1,19 +1,19 @@
 //! What is hidden by chunks that one piece covers from the top of a band to its bottom.
 
+use super::super::Counts;
 use super::super::band::{Input, LINES, Work};
 use super::super::bands::Bands;
 use super::super::grid::Grid;
 use super::super::hide::OPEN;
-use super::super::scene::{Item, Kind, Rule, Scene};
-use super::super::{Counts, Setting};
+use super::super::scene::{Item, Kind, Scene};
 use super::scene::state;
+use super::setting;
 use crate::geometry::ScreenVertex;
 use crate::hidden::z_buffer::DepthTest;
 use crate::shading::pixel::AlphaRule;
 use crate::shading::plane::Interpolation;
 use fearless_simd::Level;
 use zga_abi::Effects;
-use zga_abi::format::{DepthFormat, SubpixelDepth, SubpixelResolve};
 use zga_firmware::checked::{Clear, DrawState, Rectangle};
 
 /// Chunks of a line of the target.
@@ -23,17 +23,7 @@ const AREA: Rectangle = Rectangle { x: 0, y: 0, right: 16 * CHUNKS, bottom: LINE
 
 /// A band with these triangles, corners in pixels and a depth each, as drawing it leaves it, and how many pixels were active.
 fn drawn(triangles: &[([(i32, i32); 3], u32)]) -> (Work, usize) {
-    let setting = Setting {
-        grid: Grid::G8X8,
-        pitch: [5, 5],
-        depth: SubpixelDepth::Search,
-        resolve: SubpixelResolve::Values,
-        clocked: false,
-        pool: 1 << 20,
-        format: DepthFormat::default(),
-        rule: Rule::Nearest,
-        size: [AREA.right, AREA.bottom],
-    };
+    let setting = setting(Grid::G8X8, [AREA.right, AREA.bottom]);
     let mut scene = Scene::default();
     scene.clear(&Clear { area: AREA, colour: Some(0), depth: Some(1 << 20), stencil: None }, true, true);
     let state = DrawState { scissor: AREA, ..state(Effects::ANTI_ALIAS, 0) };

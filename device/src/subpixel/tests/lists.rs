@@ -4,25 +4,15 @@ use super::super::Setting;
 use super::super::band::Input;
 use super::super::grid::Grid;
 use super::super::lists::{Fragment, Lists};
-use super::super::scene::{Rule, Scene};
-use zga_abi::format::{DepthFormat, SubpixelDepth, SubpixelResolve};
+use super::super::scene::Scene;
+use super::setting;
 
 /// The mask of a pixel that is covered fully.
 const FULL: u64 = Grid::G4X4.full();
 
 /// Lists of a band of one line of 32 pixels, for so many fragments.
 fn lists(pool: u32) -> Lists {
-    let setting = Setting {
-        grid: Grid::G4X4,
-        pitch: [6, 6],
-        depth: SubpixelDepth::Search,
-        resolve: SubpixelResolve::Values,
-        clocked: false,
-        pool,
-        format: DepthFormat::default(),
-        rule: Rule::Nearest,
-        size: [32, 1],
-    };
+    let setting = Setting { pool, ..setting(Grid::G4X4, [32, 1]) };
     let mut lists = Lists::default();
     lists.begin(&Input { setting: &setting, scene: &Scene::default(), items: &[], top: 0, lines: 1 });
     lists

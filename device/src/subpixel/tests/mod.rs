@@ -20,10 +20,29 @@ mod search;
 mod search_clocked;
 mod walk;
 
+use super::Setting;
+use super::grid::Grid;
+use super::scene::Rule;
 use fearless_simd::Level;
+use zga_abi::format::{DepthFormat, SubpixelDepth, SubpixelResolve};
+
+/// A setting of the default depths, where the nearest is seen.
+fn setting(grid: Grid, size: [u32; 2]) -> Setting {
+    Setting {
+        grid,
+        pitch: [8 - grid.columns().ilog2(), 8 - grid.rows().ilog2()],
+        depth: SubpixelDepth::Search,
+        resolve: SubpixelResolve::Values,
+        clocked: false,
+        pool: 1 << 20,
+        format: DepthFormat::default(),
+        rule: Rule::Nearest,
+        size,
+    }
+}
 
 /// The SIMD levels below the best one of this host.
-fn levels() -> Vec<Level> {
+pub(super) fn levels() -> Vec<Level> {
     let best = Level::new();
     #[cfg(target_arch = "x86_64")]
     let below = [best.as_avx2().map(Level::Avx2), best.as_sse4_2().map(Level::Sse4_2), best.as_sse2().map(Level::Sse2)];

@@ -5,9 +5,9 @@ use super::super::band::Input;
 use super::super::grid::Grid;
 use super::super::piece::Piece;
 use super::super::rows::Bounds;
-use super::super::scene::{Item, Kind, Rule, Scene};
-use super::levels;
+use super::super::scene::{Item, Kind, Scene};
 use super::scene::state;
+use super::{levels, setting};
 use crate::geometry::ScreenVertex;
 use crate::hidden::z_buffer::DepthTest;
 use crate::hidden::z_buffer::kernel::LANES;
@@ -17,7 +17,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch};
 use proptest::prelude::*;
 use zga_abi::Effects;
-use zga_abi::format::{DepthFormat, SubpixelDepth, SubpixelResolve};
+use zga_abi::format::{DepthFormat, SubpixelDepth};
 
 /// Bounds of the chunk that begins with pixel (`x`, `y`).
 #[inline(always)]
@@ -42,17 +42,7 @@ proptest! {
     ) {
         let format = DepthFormat::new(bits, 16).expect("a format");
         vertices.iter_mut().for_each(|vertex| vertex.z <<= bits - 16);
-        let setting = Setting {
-            grid: Grid::G8X8,
-            pitch: [5, 5],
-            depth,
-            resolve: SubpixelResolve::Values,
-            clocked: false,
-            pool: 1 << 20,
-            format,
-            rule: Rule::Nearest,
-            size: [64, 16],
-        };
+        let setting = Setting { depth, format, ..setting(Grid::G8X8, [64, 16]) };
         let mut scene = Scene::default();
         let (state, test) = (state(Effects::ANTI_ALIAS, 0), Some(DepthTest::LESS));
         let taken = scene.draw(&state, test, Interpolation::Flat, AlphaRule::Vertices).expect("taken");
