@@ -409,13 +409,22 @@ fn antialias_of_flags_goes_before_the_scene_and_stands_in_the_report() {
     };
     let scene = draw(&[]);
     let set = |report: &Value| {
-        let fields = ["antialias", "subpixel_depth", "antialias_resolve", "subpixel_pool"];
+        let fields = ["antialias", "subpixel_depth", "antialias_resolve", "subpixel_pool", "antialias_edges"];
         Value::from(fields.map(|field| report["card"][field].clone()).to_vec())
     };
-    assert_eq!(set(&scene), json!(["4x4", "exhaustive", "values", 4096]));
+    assert_eq!(set(&scene), json!(["4x4", "exhaustive", "values", 4096, "all"]));
     assert!(called(&scene, "called", "anti_alias") && called(&scene, "powered", "subpixel"));
-    let flags = draw(&["--antialias", "8x8", "--subpixel-depth", "centre", "--antialias-resolve", "linear"]);
-    assert_eq!(set(&flags), json!(["8x8", "centre", "linear", 4096]));
+    let flags = draw(&[
+        "--antialias",
+        "8x8",
+        "--subpixel-depth",
+        "centre",
+        "--antialias-resolve",
+        "linear",
+        "--antialias-edges",
+        "borders",
+    ]);
+    assert_eq!(set(&flags), json!(["8x8", "centre", "linear", 4096, "borders"]));
     let off = draw(&["--antialias", "off"]);
     assert_eq!((&off["card"]["antialias"], off["card"].get("subpixel_depth")), (&"off".into(), None));
     assert!(!called(&off, "called", "anti_alias") && !called(&off, "powered", "subpixel"));

@@ -6,7 +6,7 @@
 
 use zga_abi::Effects;
 use zga_abi::bus::Bus;
-use zga_abi::format::{SubpixelDepth, SubpixelGrid, SubpixelResolve};
+use zga_abi::format::{SubpixelDepth, SubpixelEdges, SubpixelGrid, SubpixelResolve};
 use zga_abi::registers::Reg;
 
 use crate::target::Scene;
@@ -29,6 +29,9 @@ pub struct Antialias {
     /// Fragments that the lists of one line of pixels have room for, 1..=2^20. Pixels that find none keep one
     /// sample.
     pub pool: u32,
+    /// Which edges are anti-aliased: those of every triangle, or the borders of smooth surfaces, which on a smooth mesh
+    /// costs a fraction and looks the same.
+    pub edges: SubpixelEdges,
 }
 
 impl Default for Antialias {
@@ -39,6 +42,7 @@ impl Default for Antialias {
             depth: SubpixelDepth::Search,
             resolve: SubpixelResolve::Values,
             pool: MOST_FRAGMENTS,
+            edges: SubpixelEdges::All,
         }
     }
 }
@@ -118,10 +122,11 @@ impl<B: Bus> Driver<B> {
         let setting = self.state.antialias.setting;
         let grid = setting.map_or(SubpixelGrid::Off, |setting| setting.grid);
         self.registers.want(Reg::SubpixelGrid, &[grid.code()]);
-        if let Some(Antialias { depth, resolve, pool, .. }) = setting {
+        if let Some(Antialias { depth, resolve, pool, edges, .. }) = setting {
             self.registers.want(Reg::SubpixelDepth, &[depth.code()]);
             self.registers.want(Reg::SubpixelResolve, &[resolve.code()]);
             self.registers.want(Reg::SubpixelPool, &[pool]);
+            self.registers.want(Reg::SubpixelEdges, &[edges.code()]);
         }
         setting.is_some()
     }

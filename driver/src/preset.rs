@@ -15,9 +15,9 @@ pub enum Preset {
     /// The cheapest picture: one sample a pixel. Depths of 24 bits with 24 fraction bits and vertices on 1/256 pixel, since
     /// coarser ones cost the card as many clocks.
     Draft,
-    /// For looking at: 4x4 samples, each with a depth of its own, of 24 bits with 24 fraction bits, 1/256 pixel.
+    /// For looking at: 4x4 samples at every edge, each with a depth of its own, of 24 bits with 24 fraction bits, 1/256 pixel.
     Standard,
-    /// All the card has: 8x8 samples, each with a depth of its own, of 31 bits with 24 fraction bits, 1/256 pixel.
+    /// All the card has: 8x8 samples at every edge, each with a depth of its own, of 31 bits with 24 fraction bits, 1/256 pixel.
     Exact,
 }
 
@@ -99,11 +99,14 @@ impl<B: Bus> Driver<B> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use zga_abi::format::SubpixelEdges;
 
     #[test]
     fn presets_have_formats_that_there_are_and_names_of_their_own() {
         let formats: Vec<_> = Preset::ALL.iter().map(|p| (p.name(), p.depth().bits(), p.depth().fraction())).collect();
         assert_eq!(formats, [("draft", 24, 24), ("standard", 24, 24), ("exact", 31, 24)]);
         assert_eq!(TargetOptions::with_preset(8, 8, Preset::Exact).depth, Some(Preset::Exact.depth()));
+        let edges: Vec<_> = Preset::ALL.iter().map(|preset| preset.antialias().edges).collect();
+        assert_eq!(edges, [SubpixelEdges::All; 3]);
     }
 }

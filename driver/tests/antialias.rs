@@ -5,14 +5,14 @@ mod common;
 use std::time::Duration;
 
 use common::{opcodes, target, triangle};
-use zga_abi::format::{SubpixelDepth, SubpixelGrid, SubpixelResolve};
+use zga_abi::format::{SubpixelDepth, SubpixelEdges, SubpixelGrid, SubpixelResolve};
 use zga_abi::registers::Reg;
 use zga_driver::bus::MockBus;
 use zga_driver::{Antialias, Driver, DriverError, DriverOptions, Submit, Target};
 
 const RED: [u8; 4] = [255, 0, 0, 128];
-/// SUBPIXEL_GRID, SUBPIXEL_DEPTH, SUBPIXEL_RESOLVE, SUBPIXEL_POOL.
-const SUBPIXEL: [u32; 4] = [0x0260, 0x0264, 0x0268, 0x026C];
+/// SUBPIXEL_GRID, SUBPIXEL_DEPTH, SUBPIXEL_RESOLVE, SUBPIXEL_POOL, SUBPIXEL_EDGES.
+const SUBPIXEL: [u32; 5] = [0x0260, 0x0264, 0x0268, 0x026C, 0x0270];
 /// LINE_WIDTH, POINT_SIZE.
 const WIDTHS: [u32; 2] = [0x0298, 0x029C];
 const EFFECTS: u32 = 0x0280;
@@ -46,10 +46,10 @@ fn antialias_programs_grid_depth_resolve_and_pool_and_draws_call_for_masks() {
     let mut driver = driver();
     let target = target(&mut driver);
     let (depth, resolve) = (SubpixelDepth::Exhaustive, SubpixelResolve::Linear);
-    let setting = Antialias { grid: SubpixelGrid::Grid8x4, depth, resolve, pool: 4096 };
+    let setting = Antialias { grid: SubpixelGrid::Grid8x4, depth, resolve, pool: 4096, edges: SubpixelEdges::Borders };
     driver.set_antialias(Some(setting)).expect("there");
     scene(&mut driver, &target).expect("draws");
-    assert_eq!(registers(&driver, SUBPIXEL), [2, 2, 1, 4096]);
+    assert_eq!(registers(&driver, SUBPIXEL), [2, 2, 1, 4096, 1]);
     assert_eq!(driver.bus().register(EFFECTS), DEPTH | ANTI_ALIAS);
     assert_eq!(driver.antialias(), Some(setting));
 }
@@ -75,7 +75,7 @@ fn antialias_is_off_after_opening_and_nothing_of_it_travels() {
     let target = target(&mut driver);
     driver.set_line_width(2.0).expect("possible");
     scene(&mut driver, &target).expect("draws");
-    assert_eq!(registers(&driver, SUBPIXEL), [0, 1, 0, 1 << 20]);
+    assert_eq!(registers(&driver, SUBPIXEL), [0, 1, 0, 1 << 20, 0]);
     assert_eq!(registers(&driver, WIDTHS), [0x100, 0x100], "only masks have a width");
     assert_eq!(driver.bus().register(EFFECTS), DEPTH);
     let sent = opcodes(&driver.bus_mut().take_packets());

@@ -11,6 +11,10 @@
 
 #[path = "subpixel/activity.rs"]
 mod activity;
+#[path = "subpixel/borders.rs"]
+mod borders;
+#[path = "subpixel/meshes.rs"]
+mod meshes;
 #[path = "subpixel/surfaces.rs"]
 mod surfaces;
 

@@ -7,9 +7,10 @@ use zga_device::Kernel;
 use crate::limits::MAX_TARGET_PIXELS_PER_SIDE;
 use crate::play::{Asked, Environment, KERNELS, Look};
 use crate::scene::{
-    ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, Fidelity, HIDDEN_SURFACES, HiddenSurface,
-    MOST_SUBPIXEL_POOL, PRESETS, Preset, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelGrid, SubpixelResolve,
-    SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS, ZaPrediction,
+    ANTIALIAS_EDGES, ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, Fidelity,
+    HIDDEN_SURFACES, HiddenSurface, MOST_SUBPIXEL_POOL, PRESETS, Preset, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelEdges,
+    SubpixelGrid, SubpixelResolve, SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS,
+    ZaPrediction,
 };
 
 /// What is asked of the card.
@@ -76,6 +77,10 @@ pub(super) struct UnitFlags {
     /// anti-aliasing: fragments that the lists of a line of pixels have room for; pixels that find none keep one sample
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SUBPIXEL_POOL)))]
     subpixel_pool: Option<u32>,
+    /// anti-aliasing: all edges, or those where a surface ends and not those inside it, which is the default unless
+    /// subpixel-depth is exhaustive
+    #[arg(long, value_name = "EDGES", value_parser = named(&ANTIALIAS_EDGES))]
+    antialias_edges: Option<SubpixelEdges>,
     /// za: block of pixels that shares a status word, for example 8x8
     #[arg(long, value_name = "WxH", value_parser = size)]
     za_block: Option<[u32; 2]>,
@@ -103,6 +108,7 @@ impl UnitFlags {
             subpixel_depth: self.subpixel_depth,
             antialias_resolve: self.antialias_resolve,
             subpixel_pool: self.subpixel_pool,
+            antialias_edges: self.antialias_edges,
             depth_bits: self.depth_bits,
             depth_fraction_bits: self.depth_fraction_bits,
             za_block: self.za_block,

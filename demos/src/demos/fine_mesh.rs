@@ -1,5 +1,6 @@
 //! A rippled sheet of some 60,000 triangles, most of them smaller than a few pixels, many smaller than one: nearly
-//! every pixel has edges in it, and each triangle counts by the samples that it covers.
+//! every pixel has edges in it, and each triangle counts by the samples that it covers. Its stripes are no wider than two
+//! triangles: what is inside the sheet is anti-aliased too.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +9,7 @@ use glam::DVec3;
 use super::palette::{AMBER, NIGHT, SKY, TEAL, mix};
 use super::{SIZE, shapes, smooth_scene, turn};
 use crate::mesh::Mesh;
-use crate::scene::{Camera, Colours, Perspective, Scene};
+use crate::scene::{Camera, Colours, Perspective, Scene, SubpixelEdges};
 
 /// Cells along each side, of two triangles each.
 const CELLS: u32 = 174;
@@ -17,6 +18,7 @@ const HALF: f64 = 4.0;
 
 pub(super) fn scene(frame: u32) -> Scene {
     let mut scene = smooth_scene(SIZE, NIGHT);
+    scene.card.antialias_edges = Some(SubpixelEdges::All);
     let camera = Camera::Perspective(Perspective {
         eye: [1.8, 5.2, 11.0],
         target: [0.0, -0.3, 0.0],

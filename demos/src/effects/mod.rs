@@ -128,8 +128,9 @@ const PARTS: [Part; 13] = [
             Counter::SubpixelPixelsActive,
             Counter::SubpixelFragments,
             Counter::SubpixelPixelsDegraded,
+            Counter::SubpixelEdges,
         ],
-        bytes: &[Counter::SubpixelPoolPeakBytes],
+        bytes: &[Counter::SubpixelPoolPeakBytes, Counter::SubpixelEdgePeakBytes],
     },
     Part {
         name: "bitmap",

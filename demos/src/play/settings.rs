@@ -5,7 +5,7 @@
 //! [`CardInfo`]. Outputs to: [`super::Session`], [`crate::bench`], reports.
 
 use serde_json::{Value, json};
-use zga_abi::format::{DepthFormat, Fidelity, HiddenSurface, SubpixelGrid};
+use zga_abi::format::{DepthFormat, Fidelity, HiddenSurface, SubpixelDepth, SubpixelEdges, SubpixelGrid};
 use zga_abi::{Bus, Effects};
 use zga_device::Kernel;
 use zga_driver::{Antialias, CardInfo, Driver, DriverError, SystolicVariant, ZaSettings};
@@ -114,11 +114,15 @@ impl Settings {
             return refused(flags.fidelity.is_some(), "fidelity", fidelity.name().to_owned(), has);
         }
         let plain = Antialias::default();
+        let depth = card.subpixel_depth.unwrap_or(plain.depth);
+        // What is ordered sample by sample is supersampling, inside surfaces too.
+        let edges = if depth == SubpixelDepth::Exhaustive { SubpixelEdges::All } else { SubpixelEdges::Borders };
         let antialias = Antialias {
             grid: card.antialias.unwrap_or(SubpixelGrid::Off),
-            depth: card.subpixel_depth.unwrap_or(plain.depth),
+            depth,
             resolve: card.antialias_resolve.unwrap_or(plain.resolve),
             pool: card.subpixel_pool.unwrap_or(plain.pool),
+            edges: card.antialias_edges.unwrap_or(edges),
         };
         if antialias.grid != SubpixelGrid::Off && !info.effects.contains(Effects::ANTI_ALIAS) {
             let has = "this card has off; it has no sub-pixel unit".to_owned();
@@ -191,6 +195,7 @@ impl Settings {
             card["subpixel_depth"] = self.antialias.depth.name().into();
             card["antialias_resolve"] = self.antialias.resolve.name().into();
             card["subpixel_pool"] = self.antialias.pool.into();
+            card["antialias_edges"] = self.antialias.edges.name().into();
         }
         match self.hidden_surface {
             HiddenSurface::ZBuffer => {}
@@ -217,7 +222,7 @@ impl Settings {
 mod tests {
     use super::*;
     use crate::scene::{SystolicSettings, ZaPrediction};
-    use zga_abi::format::{EndTest, SubpixelDepth, SubpixelResolve, TokenColour, TokenPorts};
+    use zga_abi::format::{EndTest, SubpixelResolve, TokenColour, TokenPorts};
 
     const INFO: CardInfo =
         CardInfo { major: 1, minor: 0, effects: Effects::DEPTH, paths: 1, video_memory: 0, za_ram: 0, fifo_words: 0 };
@@ -324,10 +329,22 @@ mod tests {
         };
         let settings = resolved(&scene, flags);
         let (depth, resolve) = (SubpixelDepth::Exhaustive, SubpixelResolve::Linear);
-        assert_eq!(settings.antialias, Antialias { grid: SubpixelGrid::Grid8x4, depth, resolve, pool: 999 });
+        assert_eq!(
+            settings.antialias,
+            Antialias { grid: SubpixelGrid::Grid8x4, depth, resolve, pool: 999, edges: SubpixelEdges::All }
+        );
         let report = settings.report();
         assert_eq!((&report["antialias"], &report["subpixel_depth"]), (&json!("8x4"), &json!("exhaustive")));
         assert_eq!((&report["antialias_resolve"], &report["subpixel_pool"]), (&json!("linear"), &json!(999)));
+        assert_eq!(report["antialias_edges"], json!("all"));
+        // Supersampling has all edges, unless somebody asks for less; the rest has borders.
+        let edges = |scene: &CardSettings, flags| resolved(scene, flags).antialias.edges;
+        assert_eq!(
+            edges(&plain, CardSettings { antialias: Some(SubpixelGrid::Grid8x4), ..plain }),
+            SubpixelEdges::Borders
+        );
+        let asked = CardSettings { antialias_edges: Some(SubpixelEdges::Borders), ..plain };
+        assert_eq!(edges(&scene, asked), SubpixelEdges::Borders);
         let off = resolved(&scene, CardSettings { antialias: Some(SubpixelGrid::Off), ..plain });
         assert!(!off.is_antialiased());
         assert_eq!((&off.report()["antialias"], off.report().get("subpixel_depth")), (&json!("off"), None));

@@ -35,9 +35,10 @@ pub use effects::{
 pub use flatten::{Batch, Topology};
 pub use load::load;
 pub use settings::{
-    ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, EndTest, FIDELITIES, Fidelity, HIDDEN_SURFACES,
-    HiddenSurface, MOST_SUBPIXEL_POOL, PRESETS, Preset, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelGrid, SubpixelResolve,
-    SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, TokenColour, TokenPorts, ZA_PREDICTIONS, ZaPrediction,
+    ANTIALIAS_EDGES, ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, EndTest, FIDELITIES, Fidelity,
+    HIDDEN_SURFACES, HiddenSurface, MOST_SUBPIXEL_POOL, PRESETS, Preset, SUBPIXEL_DEPTHS, SubpixelDepth, SubpixelEdges,
+    SubpixelGrid, SubpixelResolve, SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, TokenColour, TokenPorts,
+    ZA_PREDICTIONS, ZaPrediction,
 };
 
 use crate::mesh::Mesh;

@@ -8,8 +8,9 @@ use super::json::{ANY, Fault, Json, Object, Read};
 use super::parse_draw::{self, Context};
 use super::parse_effects;
 use super::settings::{
-    ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, HIDDEN_SURFACES, MOST_SUBPIXEL_POOL,
-    PRESETS, SUBPIXEL_DEPTHS, SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS, ZA_PREDICTIONS,
+    ANTIALIAS_EDGES, ANTIALIAS_GRIDS, ANTIALIAS_RESOLVES, CardSettings, END_TESTS, FIDELITIES, HIDDEN_SURFACES,
+    MOST_SUBPIXEL_POOL, PRESETS, SUBPIXEL_DEPTHS, SystolicSettings, TILE_SIDES, TOKEN_COLOURS, TOKEN_PORTS,
+    ZA_PREDICTIONS,
 };
 use super::{Camera, DARK, Orthographic, Perspective, Scene};
 use crate::error::{Error, Result};
@@ -130,6 +131,7 @@ fn card(value: &Json) -> Read<CardSettings> {
         "subpixel_depth",
         "antialias_resolve",
         "subpixel_pool",
+        "antialias_edges",
         "za_block",
         "za_prediction",
         "za_bypass",
@@ -145,6 +147,7 @@ fn card(value: &Json) -> Read<CardSettings> {
         antialias: fields.optional("antialias", |value| value.named(&ANTIALIAS_GRIDS))?,
         subpixel_depth: fields.optional("subpixel_depth", |value| value.named(&SUBPIXEL_DEPTHS))?,
         antialias_resolve: fields.optional("antialias_resolve", |value| value.named(&ANTIALIAS_RESOLVES))?,
+        antialias_edges: fields.optional("antialias_edges", |value| value.named(&ANTIALIAS_EDGES))?,
         subpixel_pool: fields.optional("subpixel_pool", |value| value.whole(1..=MOST_SUBPIXEL_POOL))?,
         za_block: fields
             .optional("za_block", |value| value.array("whole numbers", |side| side.whole(1..=MAX_ZA_BLOCK_SIDE)))?,

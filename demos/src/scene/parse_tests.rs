@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 const FULL: &str = r#"{ "size": [640, 480], "background": [16, 16, 32, 255],
   "camera": {"screen": {}},
   "card": {"hidden_surface": "zbuffer", "fidelity": "functional", "antialias": "8x4", "subpixel_depth": "search",
-           "antialias_resolve": "linear", "subpixel_pool": 65536,
+           "antialias_resolve": "linear", "subpixel_pool": 65536, "antialias_edges": "all",
            "za_block": [32, 1], "za_prediction": "block-length", "za_bypass": false, "tile_size": [8, 64],
            "systolic_variant": {"end_test": "zero", "ports": "merged", "colour": "value", "super_buffer": true},
            "depth_bits": 24, "depth_fraction_bits": 24},
@@ -69,6 +69,7 @@ fn parse_full_example_keeps_every_field() {
     assert_eq!(antialias, (Some(SubpixelGrid::Grid8x4), Some(SubpixelDepth::Search)));
     let resolve = (scene.card.antialias_resolve, scene.card.subpixel_pool);
     assert_eq!(resolve, (Some(SubpixelResolve::Linear), Some(65536)));
+    assert_eq!(scene.card.antialias_edges, Some(SubpixelEdges::All));
     let drawn: Vec<(f32, bool)> = scene.batches().iter().map(|batch| (batch.extent, batch.translucent)).collect();
     assert_eq!(drawn, [(1.0, false), (2.5, true), (8.0, false), (0.5, false), (1.0, false)]);
     assert_eq!(scene.lights[0].kind, LightType::Spot);

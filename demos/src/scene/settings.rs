@@ -3,8 +3,8 @@
 pub use zga_driver::Preset;
 
 pub use zga_abi::format::{
-    EndTest, Fidelity, HiddenSurface, SubpixelDepth, SubpixelGrid, SubpixelResolve, TokenColour, TokenPorts,
-    ZaPrediction,
+    EndTest, Fidelity, HiddenSurface, SubpixelDepth, SubpixelEdges, SubpixelGrid, SubpixelResolve, TokenColour,
+    TokenPorts, ZaPrediction,
 };
 
 /// Declares an enumeration whose values have names in scene files and on the command line.
@@ -60,6 +60,8 @@ pub const ANTIALIAS_GRIDS: [(&str, SubpixelGrid); SubpixelGrid::ALL.len()] = nam
 pub const SUBPIXEL_DEPTHS: [(&str, SubpixelDepth); SubpixelDepth::ALL.len()] = names_of!(SubpixelDepth);
 /// Spaces in which samples are averaged, by name.
 pub const ANTIALIAS_RESOLVES: [(&str, SubpixelResolve); SubpixelResolve::ALL.len()] = names_of!(SubpixelResolve);
+/// Edges that are anti-aliased, by name.
+pub const ANTIALIAS_EDGES: [(&str, SubpixelEdges); SubpixelEdges::ALL.len()] = names_of!(SubpixelEdges);
 /// Most fragments that the lists of one line of pixels can have room for.
 pub const MOST_SUBPIXEL_POOL: u32 = 1 << 20;
 /// Sides that a tile of the tile unit can have, in pixels.
@@ -85,6 +87,8 @@ pub struct CardSettings {
     pub antialias_resolve: Option<SubpixelResolve>,
     /// Fragments that the lists of one line of pixels have room for, 1..=[`MOST_SUBPIXEL_POOL`].
     pub subpixel_pool: Option<u32>,
+    /// Which edges are anti-aliased.
+    pub antialias_edges: Option<SubpixelEdges>,
     /// Width and height of a Za block, in pixels, each 1..=16384.
     pub za_block: Option<[u32; 2]>,
     /// How the least depth of a run is predicted.
@@ -123,6 +127,7 @@ impl CardSettings {
         Self {
             antialias: self.antialias.or(Some(antialias.grid)),
             subpixel_depth: self.subpixel_depth.or(Some(antialias.depth)),
+            antialias_edges: self.antialias_edges.or(Some(antialias.edges)),
             depth_bits: self.depth_bits.or(Some(depth.bits())),
             depth_fraction_bits: self.depth_fraction_bits.or(Some(depth.fraction())),
             ..self
@@ -146,6 +151,7 @@ impl CardSettings {
             subpixel_depth: self.subpixel_depth.or(other.subpixel_depth),
             antialias_resolve: self.antialias_resolve.or(other.antialias_resolve),
             subpixel_pool: self.subpixel_pool.or(other.subpixel_pool),
+            antialias_edges: self.antialias_edges.or(other.antialias_edges),
             za_block: self.za_block.or(other.za_block),
             za_prediction: self.za_prediction.or(other.za_prediction),
             za_bypass: self.za_bypass.or(other.za_bypass),
@@ -180,5 +186,11 @@ mod tests {
             (Some(SubpixelGrid::Off), Some(16), Some(24))
         );
         assert_eq!(both.preset, Some(Preset::Draft));
+        let borders = CardSettings { antialias_edges: Some(SubpixelEdges::Borders), ..plain };
+        let edges = |settings: CardSettings| settings.antialias_edges;
+        assert_eq!(
+            [borders.or(scene), scene.or(borders), plain].map(edges),
+            [Some(SubpixelEdges::Borders), Some(SubpixelEdges::All), None]
+        );
     }
 }

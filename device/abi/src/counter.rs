@@ -38,7 +38,7 @@ impl Counter {
     /// The counter holds the largest of its events, not their sum.
     #[must_use]
     pub const fn is_maximum(self) -> bool {
-        matches!(self, Counter::SubpixelPoolPeakBytes | Counter::TextureDecodedBytes)
+        matches!(self, Counter::SubpixelPoolPeakBytes | Counter::SubpixelEdgePeakBytes | Counter::TextureDecodedBytes)
     }
 }
 
@@ -85,7 +85,7 @@ counters! {
     TileLinksRemoved "tile.links_removed" "Polygons unlinked because they end in the tile or row just done.",
     TileSortMemoryBytes "tile.sort_memory_bytes" "Bytes of Y_INDEX, X index and sort buffer that scenes needed, summed over scenes.",
     TileFragmentsNotStored "tile.fragments_not_stored" "Records that cutting each polygon into tiles would have stored beyond one a polygon.",
-    CyclesSubpixel "cycles.subpixel" "Clocks of the sub-pixel mask unit: masks, searches, depths, merges, packing, pixels written.",
+    CyclesSubpixel "cycles.subpixel" "Clocks of the sub-pixel mask unit: edges compared, masks, searches, depths, merges, packing, pixels written.",
     SubpixelMasks "subpixel.masks" "Masks made: one for each fragment of an active pixel that covers a part of it, or its centre alone, and one for each triangle, in which its edges begin.",
     SubpixelSearches "subpixel.searches" "Searches of masks: two for a fragment, for its nearest and its farthest depth.",
     SubpixelSearchSteps "subpixel.search_steps" "Bands of samples that those searches looked at.",
@@ -117,4 +117,6 @@ counters! {
     BitmapSegmentPixels "bitmap.segment_pixels" "Pixels that segments lit.",
     BitmapExpanded "bitmap.expanded" "Pixels that bitmaps of 1 bit a pixel covered, drawn or not.",
     BitmapComposed "bitmap.composed" "Pixels that were composed.",
+    SubpixelEdges "subpixel.edges" "Edges of triangles that looked for another to share, where only borders are anti-aliased.",
+    SubpixelEdgePeakBytes "subpixel.edge_peak_bytes" "Most bytes that those edges took in a scene, 8 an edge that waited and 1 a primitive: a maximum, not a sum.",
 }

@@ -397,6 +397,16 @@ enumeration! {
 }
 
 enumeration! {
+    /// Which edges are anti-aliased.
+    SubpixelEdges {
+        /// Those of every triangle.
+        All = 0 "all",
+        /// Those that a triangle does not share with another of its surface; the rest lie inside the surface.
+        Borders = 1 "borders",
+    }
+}
+
+enumeration! {
     /// Space in which the samples of a pixel are averaged and layers composed.
     SubpixelResolve {
         /// The values of the frame buffer.

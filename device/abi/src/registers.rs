@@ -181,6 +181,10 @@ registers! {
     SubpixelPool "SUBPIXEL_POOL" @ 0x026C [1] ReadWrite reset &[0x0010_0000], writable 0x001F_FFFF, w1c 0, {
         20:0 "fragments" "1..=1048576, 16 bytes each";
     }
+    /// Which edges are anti-aliased.
+    SubpixelEdges "SUBPIXEL_EDGES" @ 0x0270 [1] ReadWrite reset &[0], writable 0x1, w1c 0, {
+        0:0 "edges" "0 all: those of every triangle; 1 borders: those that a triangle does not share with another of its surface. What lies inside a surface keeps one sample";
+    }
 
     // Draw state: sampled by each draw -------------------------------------------------------
     /// Effects the draws that follow call for.

@@ -6,8 +6,8 @@ use crate::bus::{
     FIFO_BASE, FIFO_BYTES, MEMORY_BASE, MEMORY_BYTES, REGISTERS_BASE, REGISTERS_BYTES, ZA_BASE, ZA_BYTES,
 };
 use crate::format::{
-    BlendMode, DepthFormat, DepthFunction, FogFunction, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid,
-    SubpixelResolve, TextureFilter, TextureFormat, TextureFunction,
+    BlendMode, DepthFormat, DepthFunction, FogFunction, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelEdges,
+    SubpixelGrid, SubpixelResolve, TextureFilter, TextureFormat, TextureFunction,
 };
 use crate::registers::REGISTERS;
 use crate::{Access, Bus, Counter, Effects, Fault, FaultCode, Field, Reg, Units};
@@ -74,6 +74,7 @@ fn registers_well_known_offsets_stay_where_the_manual_has_them() {
         (Reg::HiddenSurface, 0x0240),
         (Reg::SubpixelGrid, 0x0260),
         (Reg::SubpixelPool, 0x026C),
+        (Reg::SubpixelEdges, 0x0270),
         (Reg::Effects, 0x0280),
         (Reg::LineWidth, 0x0298),
         (Reg::PointSize, 0x029C),
@@ -203,6 +204,7 @@ fn reset_values_of_enumerations_have_a_meaning() {
     assert_eq!(SubpixelGrid::from_code(reset(Reg::SubpixelGrid)), Some(SubpixelGrid::Off));
     assert_eq!(SubpixelDepth::from_code(reset(Reg::SubpixelDepth)), Some(SubpixelDepth::Search));
     assert_eq!(SubpixelResolve::from_code(reset(Reg::SubpixelResolve)), Some(SubpixelResolve::Values));
+    assert_eq!(SubpixelEdges::from_code(reset(Reg::SubpixelEdges)), Some(SubpixelEdges::All));
     let texture = reset(Reg::TextureControl);
     assert_eq!(TextureFormat::from_code(texture & 7), Some(TextureFormat::Rgba8888));
     assert_eq!(TextureFilter::from_code(texture >> 4 & 3), Some(TextureFilter::Nearest));
@@ -292,7 +294,7 @@ fn counters_of_newer_units_stand_behind_the_older_ones() {
     assert_eq!(Counter::CyclesSubpixel as usize, 42);
     assert_eq!(Counter::CyclesTexture as usize, Counter::SubpixelPixelsDegraded as usize + 1);
     let maxima: Vec<_> = Counter::ALL.iter().filter(|counter| counter.is_maximum()).map(|c| c.name()).collect();
-    assert_eq!(maxima, ["subpixel.pool_peak_bytes", "texture.decoded_bytes"]);
+    assert_eq!(maxima, ["subpixel.pool_peak_bytes", "texture.decoded_bytes", "subpixel.edge_peak_bytes"]);
 }
 
 // Faults and bus -----------------------------------------------------------------------------

@@ -37,7 +37,7 @@ pub struct HeldShading {
     /// The same for all of a draw.
     pub pixel: Arc<PixelShading>,
     /// What its vertices carry.
-    pub vertices: Box<Parameters>,
+    pub vertices: Parameters,
 }
 
 impl HeldShading {
@@ -45,7 +45,7 @@ impl HeldShading {
     #[must_use]
     pub fn of(setting: &Setting, number: u32) -> Option<HeldShading> {
         let (pixel, vertices) = setting.shade(number).pixel?;
-        Some(HeldShading { pixel: Arc::clone(pixel), vertices: Box::new(*vertices) })
+        Some(HeldShading { pixel: Arc::clone(pixel), vertices: *vertices })
     }
 
     /// The references that a shade is made of.

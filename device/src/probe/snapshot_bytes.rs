@@ -6,7 +6,7 @@
 //! | bytes | content |
 //! | --- | --- |
 //! | 8 | `ZGASNAP` and a zero |
-//! | 4 | version, 4 |
+//! | 4 | version, 5 |
 //! | ... | sections: the card (tag 1), then Za RAM (tag 2) and video memory (tag 3) in order |
 //!
 //! A section is: 8 bytes xxh3 of what follows in it, 4 bytes tag, 4 bytes length, content. Memory is
@@ -22,7 +22,7 @@ use zga_abi::Counter;
 use zga_firmware::ProcessorState;
 
 const MAGIC: &[u8; 8] = b"ZGASNAP\0";
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const TAG_CARD: u32 = 1;
 const TAG_ZA: u32 = 2;
 const TAG_VIDEO: u32 = 3;
@@ -88,7 +88,7 @@ impl State {
             return Err(damaged(0, "the magic bytes of a snapshot"));
         }
         if reader.word("the version")? != VERSION {
-            return Err(damaged(8, "version 4"));
+            return Err(damaged(8, "version 5"));
         }
         let content = reader.section(TAG_CARD)?;
         let card = reader.at - content.len();

@@ -11,8 +11,10 @@
 
 use super::bands::Entry;
 use super::brief::Brief;
+use super::edges::Sides;
 use super::finish::Pixels;
 use super::hide::{Depths, OPEN, Span, UNTOUCHED};
+use super::inside::Inside;
 use super::left;
 use super::lists::{Fragment, Lists};
 use super::map::Reason;
@@ -36,6 +38,8 @@ pub struct Work {
     pub pieces: Vec<Piece>,
     /// Of the specification: what each piece covers, and where at most: first column and row, first beyond.
     pub covers: Vec<(Cover, [[i32; 2]; 2])>,
+    /// Where fragments are looked for.
+    pub(super) inside: Inside,
     /// Fragments as they are found.
     pub(super) lists: Lists,
     pub(super) spans: Vec<Span>,
@@ -78,6 +82,8 @@ pub struct Input<'a> {
     pub scene: &'a Scene,
     /// Items that can touch the band, in order of submission.
     pub items: &'a [Entry],
+    /// What is known of the edges of each item of the scene; empty if all are anti-aliased.
+    pub edges: &'a [Sides],
     /// First line.
     pub top: i32,
     /// Lines.
@@ -206,6 +212,7 @@ impl Work {
         self.level = level;
         match level {
             Some(level) => {
+                self.inside.find(input);
                 sort(input, &mut self.order);
                 self.draw_part(level, input, input.all(), out, counts);
             }
@@ -300,6 +307,9 @@ impl Work {
             self.count_covers(input);
         } else {
             self.cross(simd, input);
+        }
+        for (active, looked_at) in self.active.iter_mut().zip(&self.inside.looked_at) {
+            *active &= looked_at;
         }
         self.select(simd, input, false);
     }

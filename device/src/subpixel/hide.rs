@@ -8,11 +8,11 @@
 //!
 //! Inputs from: [`super::cover`], [`super::rows`]. Outputs to: [`super::band`].
 
-use super::band::{Input, Work};
+use super::band::{Input, Work, bits_of};
 use super::rows::Bounds;
-use crate::hidden::z_buffer::kernel::{LANE, LANES};
+use crate::hidden::z_buffer::kernel::LANES;
 use fearless_simd::prelude::*;
-use fearless_simd::{Simd, i32x16, u32x16};
+use fearless_simd::{Simd, i32x16};
 
 /// A run of pixels on one line that a piece covers wholly.
 #[derive(Clone, Copy, Debug)]
@@ -145,22 +145,28 @@ impl Work {
         nearest: i32,
         [[left, first], [right, beyond]]: [[i32; 2]; 2],
     ) -> bool {
-        let lane = u32x16::from_slice(simd, &LANE);
         let (left, right) = (left as usize, right as usize);
         for chunk in left / LANES..(right - 1) / LANES + 1 {
-            match self.columns[chunk] {
-                UNTOUCHED => return false,
-                OPEN => {}
+            let column = self.columns[chunk];
+            match column {
+                UNTOUCHED | OPEN => {}
                 owner if self.is_nearer(owner, nearest) => continue,
                 _ => return false,
             }
+            let x = chunk * LANES;
+            let inside = bits_of(0, left.saturating_sub(x), (right - x).min(LANES)) as u32;
             for line in (first - input.top) as usize..(beyond - input.top) as usize {
+                let wanted = inside & self.looks_at(input, line, chunk);
+                if wanted == 0 {
+                    continue;
+                }
+                if column == UNTOUCHED {
+                    return false;
+                }
                 match self.owners[line * input.chunks() + chunk] {
                     OPEN => {
                         let far = i32x16::from_slice(simd, &self.depths[line * input.chunks() + chunk].far);
-                        let x = chunk * LANES;
-                        let inside = (lane - (left as u32).wrapping_sub(x as u32)).simd_lt((right - left) as u32);
-                        if (inside & far.simd_ge(nearest)).to_bitmask() != 0 {
+                        if wanted & far.simd_ge(nearest).to_bitmask() as u32 != 0 {
                             return false;
                         }
                     }

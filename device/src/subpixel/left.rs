@@ -5,10 +5,15 @@
 //! something. A pixel is active if more than one is left, unless all of them have one colour and those that hide the
 //! rest cover the pixel's centre too: then the path has drawn this colour there.
 //!
+//! Where borders alone are anti-aliased it is not active either if what is left lies *inside* a surface: it has one object
+//! tag, covers every sample, none twice, and no border of it ([`super::edges`]) passes between the samples. The path has
+//! drawn this surface there, unless a gap narrower than the samples' distance holds the centre.
+//!
 //! Inputs from: [`super::band`]. Outputs to: [`super::pixel`]. Clocks: none. [`super::specification`] has the same as
 //! it is written here.
 
 use super::band::{Input, Work};
+use super::inside::meets_border;
 use super::lists::Fragment;
 use super::piece::Piece;
 use super::scene::{Kind, Rule};
@@ -32,7 +37,11 @@ pub(super) fn keep(work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, [x,
         let base = input.base_at(x, line);
         let limit = cover.limit(work, input, list, base);
         let left = list.len() + usize::from(base <= limit);
-        if left < 2 || (limit < base && is_plain(work, input, list, limit, [x as i32, input.top + line as i32])) {
+        let place = [x as i32, input.top + line as i32];
+        if left < 2
+            || (limit < base && is_plain(work, input, list, limit, place))
+            || (limit < base && cover.is_inside(work, input, list, place))
+        {
             return None;
         }
     }
@@ -111,6 +120,22 @@ impl Cover {
         list.retain(|fragment| fragment.near <= limit);
         *self = Cover::new(work, list);
         limit
+    }
+}
+
+impl Cover {
+    /// Whether what is left lies inside a surface.
+    #[inline(always)]
+    fn is_inside(&self, work: &Work, input: &Input<'_>, list: &[Fragment], place: [i32; 2]) -> bool {
+        let brief = |fragment: &Fragment| &work.briefs[fragment.piece as usize];
+        let inner = |fragment: &Fragment| {
+            let item = brief(fragment).item as usize;
+            !meets_border(input.setting, &input.scene.items[item], input.edges[item], place)
+        };
+        !input.edges.is_empty()
+            && self.twice == 0
+            && self.solid == input.setting.grid.full()
+            && list.iter().all(|fragment| brief(fragment).tag == brief(&list[0]).tag && inner(fragment))
     }
 }
 

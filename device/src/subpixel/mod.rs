@@ -8,10 +8,17 @@
 //! and those that hide the rest cover the centre too. All other pixels keep what the path drew, which is the same. So
 //! every path gives one picture, and a pixel inside a triangle costs nothing here.
 //!
+//! SUBPIXEL_EDGES says whether that goes for pixels inside a *surface* too: with `borders`, where triangles that share
+//! vertices in all that these say cover a pixel together and no other edge passes between its samples, it keeps the one
+//! sample of the path instead of the mean of what they show; that mean differs from it by how much their colours bend
+//! there. Outlines, creases, seams and layers are the same.
+//!
 //! | file | part |
 //! | --- | --- |
 //! | [`grid`] | samples of a pixel, bits of a mask |
 //! | [`scene`] | what is drawn, taken while the path draws it |
+//! | [`edges`] | edges that two triangles of one surface share |
+//! | `inside` | pixels inside a surface, in which no fragment is looked for |
 //! | [`piece`] | an item set up for a band of lines: edges, depth bounds, depths at samples |
 //! | `bands` | items sorted into bands of lines |
 //! | [`band`] | a band from items to resolved pixels, from the nearest item to the farthest |
@@ -40,7 +47,7 @@
 //! | [`map`] | an instrument: which pixels were taken up, and why |
 //!
 //! # Clocks
-//! 1 a mask (one for each fragment of an active pixel that covers a part of it, or its centre alone, and one for each
+//! 1 an edge that looks for another to share, 1 a mask (one for each fragment of an active pixel that covers a part of it, or its centre alone, and one for each
 //! triangle, in which its edges begin), 1 a band of samples searched, 1 a depth evaluated, 1 a merge, 1 a fragment packed,
 //! 1 an active pixel averaged and written; a colour is 1 clock of the shading unit. Lists are written while masks are
 //! made.
@@ -48,17 +55,20 @@
 //! # Memory
 //! The lists of one line of pixels lie in a pool of SUBPIXEL_POOL fragments of [`FRAGMENT_BYTES`] bytes. Pixels get
 //! their lists from left to right; one whose list does not fit keeps the path's pixel, one sample, and is counted in
-//! subpixel.pixels_degraded.
+//! subpixel.pixels_degraded. Of the edges that have found none to share yet each takes [`EDGE_BYTES`], and what is known
+//! of a primitive's edges one byte.
 
 pub mod band;
 mod bands;
 mod brief;
 mod compare;
 mod cover;
+pub mod edges;
 mod finish;
 pub mod gamma;
 pub mod grid;
 mod hide;
+mod inside;
 mod layers;
 mod left;
 mod lists;
@@ -86,11 +96,13 @@ use crate::shading::pixel::ShadingCounts;
 use grid::Grid;
 use scene::{ItemDraw, Rule};
 use zga_abi::Counter;
-use zga_abi::format::{DepthFormat, Fidelity, SubpixelDepth, SubpixelGrid, SubpixelResolve};
+use zga_abi::format::{DepthFormat, Fidelity, SubpixelDepth, SubpixelEdges, SubpixelGrid, SubpixelResolve};
 use zga_firmware::checked::Target;
 
 /// Bytes of a fragment in the pool: its mask, its pixel, its primitive.
 pub const FRAGMENT_BYTES: u64 = 16;
+/// Bytes of an edge that waits for another to share: its key, its primitive.
+pub const EDGE_BYTES: u64 = 8;
 
 /// What all pixels of a scene share.
 #[derive(Clone, Copy, Debug)]
@@ -107,6 +119,8 @@ pub struct Setting {
     pub clocked: bool,
     /// Fragments of a line.
     pub pool: u32,
+    /// Which edges are anti-aliased.
+    pub edges: SubpixelEdges,
     /// Number format of depth.
     pub format: DepthFormat,
     /// From what the order of opaque fragments follows.
@@ -133,6 +147,7 @@ impl Setting {
             resolve: setting.resolve,
             clocked: target.fidelity == Fidelity::Clocked,
             pool: setting.pool,
+            edges: setting.edges,
             format: target.depth_format,
             rule,
             size: [target.colour.width, target.colour.height],
@@ -163,6 +178,10 @@ pub struct Counts {
     pub degraded: u64,
     /// Most fragments of a line.
     pub most: u64,
+    /// Edges that looked for another to share.
+    pub edges: u64,
+    /// Most bytes that edges took.
+    pub edge_bytes: u64,
     /// Pixels shaded: colours interpolated, or taken through more.
     pub shaded: u64,
     /// What they cost beyond interpolated colours.
@@ -182,6 +201,8 @@ impl crate::pipeline::bands::Counts for Counts {
             fragments: self.fragments + other.fragments,
             degraded: self.degraded + other.degraded,
             most: self.most.max(other.most),
+            edges: self.edges + other.edges,
+            edge_bytes: self.edge_bytes.max(other.edge_bytes),
             shaded: self.shaded + other.shaded,
             shading: self.shading.plus(other.shading),
         }
@@ -202,7 +223,7 @@ impl Counts {
     /// Clocks of the unit, without shading.
     #[must_use]
     pub fn clocks(&self) -> Clocks {
-        Clocks(self.masks + self.steps + self.evaluations + self.merges + self.packed + self.active)
+        Clocks(self.edges + self.masks + self.steps + self.evaluations + self.merges + self.packed + self.active)
     }
 }
 
@@ -218,6 +239,8 @@ pub fn charge(counts: &Counts, account: &mut Account) {
     account.add(Counter::SubpixelFragments, counts.fragments);
     account.add(Counter::SubpixelPixelsDegraded, counts.degraded);
     account.maximum(Counter::SubpixelPoolPeakBytes, counts.most * FRAGMENT_BYTES);
+    account.add(Counter::SubpixelEdges, counts.edges);
+    account.maximum(Counter::SubpixelEdgePeakBytes, counts.edge_bytes);
     account.add(Counter::ColourWrites, counts.active);
     account.charge(Counter::CyclesSubpixel, counts.clocks());
     account.add(Counter::ShadingPixels, counts.shaded);

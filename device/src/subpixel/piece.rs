@@ -335,7 +335,7 @@ impl Piece {
 
 /// The one colour of a primitive that has one, wherever it is shaded.
 #[inline(always)]
-fn plain(v: &[ScreenVertex; 3], draw: &ItemDraw) -> Option<u32> {
+pub(super) fn plain(v: &[ScreenVertex; 3], draw: &ItemDraw) -> Option<u32> {
     let [a, b, c] = [v[0].colour, v[1].colour, v[2].colour];
     let one = draw.interpolation == Interpolation::Flat || (a == b && a == c);
     (one && draw.shading.is_none()).then_some(a)

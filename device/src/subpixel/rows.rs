@@ -107,6 +107,8 @@ pub(super) struct Visit {
     x: u32,
     /// Place in the band.
     at: u32,
+    /// Pixels in which fragments are looked for.
+    wanted: u32,
 }
 
 impl Work {
@@ -126,7 +128,7 @@ impl Work {
         let hides = if rows.hides { u32x16::splat(simd, 0) } else { u32x16::splat(simd, LANES as u32) };
         let hides = lane.simd_ge(hides);
         self.runs.reserve(self.visits.len());
-        for &Visit { row: number, x, at } in &self.visits {
+        for &Visit { row: number, x, at, wanted } in &self.visits {
             let number = number as usize;
             let line = rows.line + number;
             let row = &mut rows.rows[number];
@@ -137,7 +139,7 @@ impl Work {
             // What is hidden already changes nothing.
             let seen = near.simd_le(limit) & inside(columns, row.met);
             let whole = inside(columns, row.whole);
-            let parts = (seen & !whole).to_bitmask() as u32;
+            let parts = (seen & !whole).to_bitmask() as u32 & wanted;
             let whole = seen & whole & hides;
             row.seen |= whole.to_bitmask() != 0;
             let nearest = i32x16::from_slice(simd, &depths.near);
@@ -194,6 +196,10 @@ impl Work {
                     continue;
                 }
                 let x = (chunk * LANES) as i32;
+                let wanted = self.looks_at(input, line, chunk);
+                if wanted == 0 {
+                    continue;
+                }
                 let all = whole[0] <= x && whole[1] >= width.min(x + LANES as i32);
                 if all && !rows.hides {
                     continue;
@@ -216,7 +222,7 @@ impl Work {
                     }
                     self.open(simd, input, line, chunk);
                 }
-                self.visits.push(Visit { row: number as u32, x: x as u32, at: at as u32 });
+                self.visits.push(Visit { row: number as u32, x: x as u32, at: at as u32, wanted });
             }
             rows.rows[number].seen = seen;
         }

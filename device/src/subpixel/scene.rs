@@ -77,6 +77,22 @@ pub struct ItemDraw {
 }
 
 impl ItemDraw {
+    /// Whether what is drawn goes on across an edge in an item of `other`, where corners of the two are one; these are
+    /// given by their numbers.
+    #[must_use]
+    pub(super) fn goes_on_in(&self, other: &ItemDraw, corners: [(usize, usize); 2]) -> bool {
+        let shading = match (&self.shading, &other.shading) {
+            (None, None) => true,
+            (Some(mine), Some(others)) => {
+                mine.pixel == others.pixel && corners.iter().all(|&(j, k)| mine.vertices[j] == others.vertices[k])
+            }
+            _ => false,
+        };
+        shading
+            && (self.test, self.interpolation, self.mode, self.tag)
+                == (other.test, other.interpolation, other.mode, other.tag)
+    }
+
     /// How the pixels of an item get their colours.
     #[must_use]
     pub fn shade(&self) -> Shade<'_> {

@@ -7,6 +7,7 @@
 
 use super::band::{Input, LINES, Resolved, Work};
 use super::bands::Bands;
+use super::edges::Edges;
 use super::scene::Scene;
 use super::{Counts, Setting};
 use crate::pipeline::bands::Counts as _;
@@ -24,6 +25,7 @@ const GROUP: usize = 24;
 #[derive(Debug, Default)]
 pub struct Unit {
     bands: Bands,
+    edges: Edges,
     works: Vec<Mutex<Work>>,
     resolved: Vec<Vec<Resolved>>,
 }
@@ -45,14 +47,19 @@ impl Unit {
     ) -> (Counts, Result<(), Stopped>) {
         let height = setting.size[1] as usize;
         self.bands.fill(scene, setting.rule, setting.size[1]);
+        let mut total = Counts::default();
+        match level {
+            Some(_) => self.edges.find(setting, scene, &mut total),
+            None => self.edges.specify(setting, scene, &mut total),
+        }
         let threads = pool.map_or(1, ThreadPool::current_num_threads);
         self.works.resize_with(threads.max(self.works.len()), Mutex::default);
         let group = GROUP * threads;
         self.resolved.resize_with(group.max(self.resolved.len()), Vec::new);
         // The edges of a triangle with masks begin in one of them.
-        let mut total = Counts { masks: self.bands.masked(), ..Counts::default() };
+        total.masks = self.bands.masked();
         for first in (0..self.bands.count()).step_by(group) {
-            let (bands, works) = (&self.bands, &self.works);
+            let (bands, edges, works) = (&self.bands, self.edges.sides(), &self.works);
             let draw = |(band, out): (usize, &mut Vec<Resolved>)| {
                 out.clear();
                 let mut counts = Counts::default();
@@ -64,7 +71,7 @@ impl Unit {
                 let mut work = mine.lock().unwrap_or_else(PoisonError::into_inner);
                 let top = band * LINES;
                 let lines = LINES.min(height - top);
-                let input = Input { setting, scene, items: bands.items(band), top: top as i32, lines };
+                let input = Input { setting, scene, items: bands.items(band), edges, top: top as i32, lines };
                 work.draw(level, &input, out, &mut counts);
                 counts
             };

@@ -1,6 +1,8 @@
 //! Settings of the hidden-surface paths and of the sub-pixel unit.
 
-use zga_abi::format::{EndTest, SubpixelDepth, SubpixelGrid, SubpixelResolve, TokenColour, TokenPorts, ZaPrediction};
+use zga_abi::format::{
+    EndTest, SubpixelDepth, SubpixelEdges, SubpixelGrid, SubpixelResolve, TokenColour, TokenPorts, ZaPrediction,
+};
 
 /// The Za unit's registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,4 +67,6 @@ pub struct SubpixelSetting {
     pub resolve: SubpixelResolve,
     /// Fragments that the lists of one line of pixels have room for, 1..=2^20.
     pub pool: u32,
+    /// Which edges are anti-aliased.
+    pub edges: SubpixelEdges,
 }

@@ -6,8 +6,8 @@ use super::{bad_length, effects, memory::VideoMemory};
 use crate::checked::{Rectangle, SubpixelSetting, SystolicSetting, ZaSetting};
 use crate::hardware::Hardware;
 use zga_abi::format::{
-    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid, SubpixelResolve,
-    TokenColour, TokenPorts, ZaPrediction,
+    DepthFormat, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelEdges, SubpixelGrid,
+    SubpixelResolve, TokenColour, TokenPorts, ZaPrediction,
 };
 use zga_abi::packet::PROBE_RECORD_WORDS;
 use zga_abi::register::Access;
@@ -117,6 +117,7 @@ pub(super) fn subpixel(
     depth: Claim,
     resolve: Claim,
     pool: Claim,
+    edges: Claim,
 ) -> Result<Option<SubpixelSetting>, Fault> {
     let claim = grid;
     let grid = claim.mean(SubpixelGrid::from_code(claim.value))?;
@@ -126,7 +127,8 @@ pub(super) fn subpixel(
     let depth = subpixel_depth(depth)?;
     let resolve = resolve.mean(SubpixelResolve::from_code(resolve.value))?;
     let pool = subpixel_pool(pool)?;
-    Ok((grid != SubpixelGrid::Off).then_some(SubpixelSetting { grid, depth, resolve, pool }))
+    let edges = edges.mean(SubpixelEdges::from_code(edges.value))?;
+    Ok((grid != SubpixelGrid::Off).then_some(SubpixelSetting { grid, depth, resolve, pool, edges }))
 }
 
 /// LINE_WIDTH or POINT_SIZE: u8.8, pixels, not 0.

@@ -18,7 +18,7 @@ use zga_abi::{Effects, Fault, FaultCode, Reg};
 const DEPTH_BYTES: u32 = 4;
 
 /// The registers that begin scene samples.
-pub(super) const TARGET_REGISTERS: [Reg; 21] = [
+pub(super) const TARGET_REGISTERS: [Reg; 22] = [
     Reg::TargetSize,
     Reg::ColourBase,
     Reg::ColourPitch,
@@ -38,6 +38,7 @@ pub(super) const TARGET_REGISTERS: [Reg; 21] = [
     Reg::SubpixelDepth,
     Reg::SubpixelResolve,
     Reg::SubpixelPool,
+    Reg::SubpixelEdges,
     Reg::StencilBase,
     Reg::StencilPitch,
 ];
@@ -78,6 +79,7 @@ impl Scene {
             subpixel_depth,
             resolve,
             pool,
+            edges,
             stencil_base,
             stencil_pitch,
         ] = claims;
@@ -135,6 +137,7 @@ impl Scene {
                 subpixel_depth,
                 resolve,
                 pool,
+                edges,
             )?,
             stencil,
         };

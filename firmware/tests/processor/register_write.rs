@@ -127,6 +127,7 @@ fn register_write_every_enumerated_value_is_taken() {
     cases.extend((0..3).map(|value| (0x0264, value)));
     cases.extend((0..2).map(|value| (0x0268, value)));
     cases.extend([(0x026C, 1), (0x026C, 0x0010_0000)]);
+    cases.extend((0..2).map(|value| (0x0270, value)));
     cases.extend([(0x0304, 0x0001_0001), (0x0304, 0x4000_4000), (0x030C, 0x4000_4000), (0x0310, 0)]);
     cases.extend((0..6).map(|format| (0x0308, 0x000F_F100 | format)));
     cases.extend((0..3).map(|filter| (0x0308, 0x0001_0000 | filter << 4)));

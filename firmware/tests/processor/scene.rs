@@ -3,8 +3,8 @@
 use crate::bench::{Bench, TRIANGLE};
 use crate::mock::{Call, MEMORY};
 use zga_abi::format::{
-    DepthFormat, DepthFunction, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelGrid,
-    SubpixelResolve, TokenColour, TokenPorts, ZaPrediction,
+    DepthFormat, DepthFunction, EndTest, Fidelity, HiddenSurface, PixelFormat, SubpixelDepth, SubpixelEdges,
+    SubpixelGrid, SubpixelResolve, TokenColour, TokenPorts, ZaPrediction,
 };
 use zga_abi::{Fault, FaultCode};
 use zga_firmware::Stopped;
@@ -31,6 +31,7 @@ fn begin_scene_samples_the_target() {
     bench.card.set(0x0264, 2);
     bench.card.set(0x0268, 1);
     bench.card.set(0x026C, 4096);
+    bench.card.set(0x0270, 1);
     bench.card.set(0x021C, 0x7000);
     bench.card.set(0x0220, 64);
     let call = bench.last(0x02, &[]);
@@ -54,6 +55,7 @@ fn begin_scene_samples_the_target() {
             depth: SubpixelDepth::Exhaustive,
             resolve: SubpixelResolve::Linear,
             pool: 4096,
+            edges: SubpixelEdges::Borders,
         }),
         stencil: Some(StencilSurface { base: 0x7000, pitch: 64 }),
     };
@@ -114,6 +116,7 @@ fn begin_scene_with_a_register_at_fault_names_its_offset() {
         (0x0268, 2, BadValue, 0x0268),
         (0x026C, 0, BadValue, 0x026C),
         (0x026C, 0x0010_0001, BadValue, 0x026C),
+        (0x0270, 2, BadValue, 0x0270),
         (0x021C, 0x7020, BadAlignment, 0x021C),
         (0x021C, MEMORY - 0x7C0, OutOfMemory, 0x021C),
         (0x021C, 0x1FC0, Overlap, 0x021C), // the frame buffer
@@ -187,8 +190,13 @@ fn begin_scene_with_a_grid_after_reset_has_the_manual_s_values() {
         let mut bench = Bench::with_target();
         bench.card.set(0x0260, code);
         bench.good(0x02, &[]);
-        let setting =
-            SubpixelSetting { grid, depth: SubpixelDepth::Search, resolve: SubpixelResolve::Values, pool: 1 << 20 };
+        let setting = SubpixelSetting {
+            grid,
+            depth: SubpixelDepth::Search,
+            resolve: SubpixelResolve::Values,
+            pool: 1 << 20,
+            edges: SubpixelEdges::All,
+        };
         assert_eq!(bench.processor.target().and_then(|target| target.subpixel), Some(setting));
     }
 }

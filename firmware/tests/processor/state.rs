@@ -8,7 +8,7 @@ use zga_firmware::{Processor, ProcessorState};
 #[test]
 fn state_after_power_on_is_all_zero() {
     assert_eq!(Processor::new().state(), ProcessorState::default());
-    assert_eq!(Processor::default().state().to_words(), [0; 24]);
+    assert_eq!(Processor::default().state().to_words(), [0; 25]);
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn from_state_in_a_scene_goes_on_where_it_was() {
 fn from_state_in_a_scene_with_a_grid_has_its_grid() {
     let mut bench = Bench::in_scene_with_grid();
     let state = bench.processor.state();
-    assert_eq!(state.to_words()[18..22], [3, 1, 0, 1 << 20]);
+    assert_eq!(state.to_words()[18..23], [3, 1, 0, 1 << 20, 0]);
     bench.card.set(0x0260, 0);
     let restored = Processor::from_state(&bench.card, &state).expect("a good state");
     assert_eq!(restored.target(), bench.processor.target());

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Index;
 
 /// Names, in the order of the COUNTERS registers.
-pub const NAMES: [&str; 69] = [
+pub const NAMES: [&str; 76] = [
     "cycles.total",
     "cycles.frontend",
     "cycles.geometry",
@@ -74,6 +74,13 @@ pub const NAMES: [&str; 69] = [
     "stencil.tested",
     "stencil.failed",
     "stencil.shadowed",
+    "scanout.cursor_pixels",
+    "bitmap.entries",
+    "bitmap.segment_pixels",
+    "bitmap.expanded",
+    "bitmap.composed",
+    "subpixel.edges",
+    "subpixel.edge_peak_bytes",
 ];
 
 /// Values of all counters.

@@ -42,4 +42,4 @@ pub use picture::{Differences, Picture};
 pub use random::Random;
 pub use screen::{Counts, RawVertex, Screen, Topology};
 pub use stage::{Comparison, Stage};
-pub use subpixel::{Grid, Order, Resolve, Subpixel};
+pub use subpixel::{Edges, Grid, Order, Resolve, Subpixel};

@@ -1,4 +1,4 @@
-//! Samples of a pixel: the registers from SUBPIXEL_GRID to SUBPIXEL_POOL.
+//! Samples of a pixel: the registers from SUBPIXEL_GRID to SUBPIXEL_EDGES.
 
 /// Samples of a pixel, columns x rows; the number is the register's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,6 +62,21 @@ impl Resolve {
     pub const ALL: [Self; 2] = [Self::Values, Self::Linear];
 }
 
+/// Which edges are anti-aliased; the number is the register's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Edges {
+    /// Those of every triangle.
+    #[default]
+    All = 0,
+    /// Those that a triangle does not share with another of its surface.
+    Borders = 1,
+}
+
+impl Edges {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::All, Self::Borders];
+}
+
 /// The registers; sampled by BEGIN_SCENE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Subpixel {
@@ -73,12 +88,14 @@ pub struct Subpixel {
     pub resolve: Resolve,
     /// Fragments that the lists of one line of pixels have room for.
     pub pool: u32,
+    /// Which edges are anti-aliased.
+    pub edges: Edges,
 }
 
 impl Default for Subpixel {
     /// As the card resets them: no grid.
     fn default() -> Self {
-        Self { grid: Grid::Off, depth: Order::Search, resolve: Resolve::Values, pool: 1 << 20 }
+        Self { grid: Grid::Off, depth: Order::Search, resolve: Resolve::Values, pool: 1 << 20, edges: Edges::All }
     }
 }
 
@@ -95,9 +112,15 @@ impl Subpixel {
         Self { depth: Order::Exhaustive, ..Self::on(grid) }
     }
 
-    /// SUBPIXEL_GRID to SUBPIXEL_POOL.
+    /// The same, at borders alone.
     #[must_use]
-    pub const fn words(&self) -> [u32; 4] {
-        [self.grid as u32, self.depth as u32, self.resolve as u32, self.pool]
+    pub fn borders(self) -> Self {
+        Self { edges: Edges::Borders, ..self }
+    }
+
+    /// SUBPIXEL_GRID to SUBPIXEL_EDGES.
+    #[must_use]
+    pub const fn words(&self) -> [u32; 5] {
+        [self.grid as u32, self.depth as u32, self.resolve as u32, self.pool, self.edges as u32]
     }
 }

@@ -3,8 +3,8 @@
 use crate::FaultCode;
 use crate::format::{
     BitmapFormat, BlendMode, ComposeOperator, DepthFormat, DepthFunction, FogFunction, HiddenSurface, LightType,
-    PictureFormat, PixelFormat, RasterOperation, Repeat, StretchFilter, SubpixelDepth, SubpixelGrid, SubpixelResolve,
-    TextureFilter, TextureFormat, TextureFunction, Topology,
+    PictureFormat, PixelFormat, RasterOperation, Repeat, StretchFilter, SubpixelDepth, SubpixelEdges, SubpixelGrid,
+    SubpixelResolve, TextureFilter, TextureFormat, TextureFunction, Topology,
 };
 use crate::light::{LIGHT_BYTES, LightRecord, MOST_LIGHTS};
 use crate::packet::{DrawFlags, MAX_PAYLOAD, Opcode, header, payload_words};
@@ -67,6 +67,7 @@ round_trips! {
     subpixel_grid_codes_round_trip: SubpixelGrid, 8;
     subpixel_depth_codes_round_trip: SubpixelDepth, 8;
     subpixel_resolve_codes_round_trip: SubpixelResolve, 8;
+    subpixel_edges_codes_round_trip: SubpixelEdges, 8;
     texture_format_codes_round_trip: TextureFormat, 8;
     texture_filter_codes_round_trip: TextureFilter, 8;
     texture_function_codes_round_trip: TextureFunction, 8;
@@ -85,6 +86,7 @@ fn subpixel_grid_names_are_columns_by_rows_and_samples_their_product() {
         ["centre", "search", "exhaustive"]
     );
     assert_eq!(SubpixelResolve::ALL.iter().map(|mode| mode.name()).collect::<Vec<_>>(), ["values", "linear"]);
+    assert_eq!(SubpixelEdges::ALL.iter().map(|mode| mode.name()).collect::<Vec<_>>(), ["all", "borders"]);
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `grid` | samples, bits and places against the manual's numbers |
 //! | `hide` | what chunks that one piece covers from top to bottom of a band leave to be done |
+//! | `inside` | edges that are shared, and pixels inside a surface, against the specification |
 //! | `lists` | order, limits and room of lists |
 //! | `rows` | bounds of the depths of a chunk against those of its pixels |
 //! | `scene` | what a scene takes, and by which rule its opaque fragments are ordered |
@@ -13,6 +14,7 @@
 
 mod grid;
 mod hide;
+mod inside;
 mod lists;
 mod rows;
 mod scene;
@@ -24,7 +26,7 @@ use super::Setting;
 use super::grid::Grid;
 use super::scene::Rule;
 use fearless_simd::Level;
-use zga_abi::format::{DepthFormat, SubpixelDepth, SubpixelResolve};
+use zga_abi::format::{DepthFormat, SubpixelDepth, SubpixelEdges, SubpixelResolve};
 
 /// A setting of the default depths, where the nearest is seen.
 fn setting(grid: Grid, size: [u32; 2]) -> Setting {
@@ -35,6 +37,7 @@ fn setting(grid: Grid, size: [u32; 2]) -> Setting {
         resolve: SubpixelResolve::Values,
         clocked: false,
         pool: 1 << 20,
+        edges: SubpixelEdges::All,
         format: DepthFormat::default(),
         rule: Rule::Nearest,
         size,

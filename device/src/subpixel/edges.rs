@@ -1,0 +1,214 @@
+//! Edges inside a surface: those that two triangles share.
+//!
+//! Two triangles share an edge if they lie on both sides of it, face the same way, and agree at both its ends in all that
+//! vertices say (place, depth, colour, normal, place in the texture) and in the state they are drawn with: the surface
+//! goes on across the edge, and so do its colours. In order of submission an edge finds the last one that it can share
+//! and that no other has found. What is not shared is a *border*. A triangle of one colour all over shares none: where its
+//! neighbour has that colour too there is nothing to average, and else a seam.
+//!
+//! Inputs from: [`super::scene`]. Outputs to: [`super::inside`]. Clocks: one for each edge of a triangle that can share
+//! its edges. The same by definition: [`super::specification`].
+
+use super::piece::{extent, plain};
+use super::scene::{Item, ItemDraw, Kind, Scene};
+use super::{Counts, EDGE_BYTES, Setting, specification};
+use crate::geometry::ScreenVertex;
+use crate::geometry::triangle::doubled_area;
+use crate::shading::plane::Interpolation;
+use bitflags::bitflags;
+
+bitflags! {
+    /// What is known of an item's edges.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Sides: u8 {
+        /// Its edge from vertex 0 to vertex 1 is shared.
+        const FIRST = 1;
+        /// Its edge from vertex 1 to vertex 2 is shared.
+        const SECOND = 2;
+        /// Its edge from vertex 2 to vertex 0 is shared.
+        const THIRD = 4;
+        /// It can share edges.
+        const SMOOTH = 8;
+        /// Its doubled area is less than 0.
+        const BACK = 16;
+        /// It has no area.
+        const NOTHING = 32;
+        /// All of its edges are shared.
+        const INNER = 7;
+    }
+}
+
+impl Sides {
+    /// Whether edge `k`, from vertex `k` to the next, is shared.
+    #[must_use]
+    #[inline(always)]
+    pub fn shares(self, k: usize) -> bool {
+        self.bits() >> k & 1 != 0
+    }
+}
+
+/// An edge that has found none to share yet.
+#[derive(Clone, Copy, Debug, Default)]
+struct Waiting {
+    hash: u32,
+    /// Its item's number, times 4, and its number in the item.
+    edge: u32,
+    /// The next of the same place in the table, plus 1; 0 if there is none.
+    next: u32,
+}
+
+/// The edges of a scene.
+#[derive(Debug, Default)]
+pub struct Edges {
+    sides: Vec<Sides>,
+    /// The first that waits of each place of the table, plus 1.
+    heads: Vec<u32>,
+    waiting: Vec<Waiting>,
+    /// The first of `waiting` that means nothing, plus 1; they go on as the others do.
+    free: u32,
+}
+
+/// The vertex after `k`.
+#[inline(always)]
+pub(super) fn after(k: usize) -> usize {
+    if k == 2 { 0 } else { k + 1 }
+}
+
+impl Edges {
+    /// Finds the edges that the items of a scene share, if they are asked for.
+    pub fn find(&mut self, setting: &Setting, scene: &Scene, counts: &mut Counts) {
+        self.sides.clear();
+        if !setting.looks_inside() {
+            return;
+        }
+        self.heads.clear();
+        self.heads.resize((2 * scene.items.len()).next_power_of_two(), 0);
+        self.waiting.clear();
+        self.free = 0;
+        let shift = 32 - self.heads.len().trailing_zeros();
+        let (mut waits, mut most) = (0_u64, 0_u64);
+        for (number, item) in (0..).zip(&scene.items) {
+            let sides = Sides::of(setting, item, &scene.draws[item.draw as usize]);
+            self.sides.push(sides);
+            if !sides.contains(Sides::SMOOTH) || sides.contains(Sides::NOTHING) {
+                continue;
+            }
+            counts.edges += 3;
+            let places = item.vertices.map(|v| place(&v));
+            for k in 0..3 {
+                let hash = (places[k].wrapping_add(places[after(k)]).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32) as u32;
+                let head = if shift == 32 { 0 } else { hash >> shift } as usize;
+                waits = if self.join(scene, hash, head, number, k) { waits - 1 } else { waits + 1 };
+            }
+            most = most.max(waits);
+        }
+        if !scene.items.is_empty() {
+            counts.edge_bytes = most * EDGE_BYTES + scene.items.len() as u64;
+        }
+    }
+
+    /// The same by definition.
+    pub fn specify(&mut self, setting: &Setting, scene: &Scene, counts: &mut Counts) {
+        self.sides.clear();
+        if setting.looks_inside() {
+            self.sides = specification::sides(setting, scene, counts);
+        }
+    }
+
+    /// Has an edge share another that waits, or wait; whether it shares one.
+    #[inline(always)]
+    fn join(&mut self, scene: &Scene, hash: u32, head: usize, number: u32, k: usize) -> bool {
+        let item = &scene.items[number as usize];
+        let mut link = &mut self.heads[head];
+        // What links to the one that is looked at: 0 the head, else a place plus 1.
+        let (mut before, mut at) = (0_u32, *link);
+        while at != 0 {
+            let Waiting { hash: other, edge, next } = self.waiting[at as usize - 1];
+            if other == hash {
+                let (other, side) = ((edge / 4) as usize, (edge % 4) as usize);
+                let facing = Sides::SMOOTH | Sides::BACK;
+                let alike = self.sides[other] & facing == self.sides[number as usize] & facing;
+                if alike && share(scene, item, k, &scene.items[other], side) {
+                    match before {
+                        0 => *link = next,
+                        before => self.waiting[before as usize - 1].next = next,
+                    }
+                    self.waiting[at as usize - 1].next = self.free;
+                    self.free = at;
+                    self.sides[other] |= Sides::from_bits_retain(1 << side);
+                    self.sides[number as usize] |= Sides::from_bits_retain(1 << k);
+                    return true;
+                }
+            }
+            (before, at) = (at, next);
+        }
+        let new = Waiting { hash, edge: number * 4 + k as u32, next: *link };
+        link = &mut self.heads[head];
+        match self.free {
+            0 => {
+                self.waiting.push(new);
+                *link = self.waiting.len() as u32;
+            }
+            at => {
+                self.free = std::mem::replace(&mut self.waiting[at as usize - 1], new).next;
+                *link = at;
+            }
+        }
+        false
+    }
+
+    /// What is known of the edges of each item; empty if nothing is.
+    #[must_use]
+    pub fn sides(&self) -> &[Sides] {
+        &self.sides
+    }
+}
+
+impl Sides {
+    /// What is known of an item that shares no edge yet.
+    #[inline(always)]
+    pub(super) fn of(setting: &Setting, item: &Item, draw: &ItemDraw) -> Sides {
+        let all = &draw.scissor;
+        let whole = [all.x, all.y] == [0, 0] && [all.right, all.bottom] == setting.size;
+        let plain = plain(&item.vertices, draw).is_some();
+        if item.kind != Kind::Masked || plain || draw.blend || draw.has_holes() || !whole {
+            return Sides::empty();
+        }
+        let [low, high] = extent(item, draw);
+        if low[0] >= high[0] || low[1] >= high[1] {
+            return Sides::empty();
+        }
+        let v = &item.vertices;
+        let area = doubled_area(&v[0], &v[1], &v[2]);
+        let mut sides = Sides::SMOOTH;
+        sides.set(Sides::BACK, area < 0);
+        sides.set(Sides::NOTHING, area == 0);
+        sides
+    }
+}
+
+/// A number for a place, so that the sum of two has few others.
+#[inline(always)]
+fn place(v: &ScreenVertex) -> u64 {
+    let place = u64::from(v.x as u32) | u64::from(v.y as u32) << 32;
+    let mixed = place.wrapping_mul(0xD6E8_FEB8_6659_FD93);
+    mixed ^ mixed >> 32
+}
+
+/// Whether edge `j` of one triangle and edge `k` of another that faces the same way can be shared.
+#[inline(always)]
+pub(super) fn share(scene: &Scene, a: &Item, j: usize, b: &Item, k: usize) -> bool {
+    let ends = [(j, after(k)), (after(j), k)];
+    let corner = |&(j, k): &(usize, usize)| {
+        let (v, w) = (&a.vertices[j], &b.vertices[k]);
+        v.x == w.x && v.y == w.y && v.z == w.z && v.reciprocal_w == w.reciprocal_w
+    };
+    if !ends.iter().all(corner) {
+        return false;
+    }
+    let (first, second) = (&scene.draws[a.draw as usize], &scene.draws[b.draw as usize]);
+    let flat = first.interpolation == Interpolation::Flat;
+    let colours = |&(j, k): &(usize, usize)| a.vertices[j].colour == b.vertices[k].colour;
+    let coloured = if flat { colours(&(0, 0)) } else { ends.iter().all(colours) };
+    coloured && (a.draw == b.draw || first.goes_on_in(second, ends))
+}
