@@ -47,6 +47,7 @@ pub const PARTS: &[(&str, &str, Measure)] = &[
     ("combined", "all settings together, and the Pareto line", axes::combined::section),
     ("grid", "mask grid: samples of a pixel", axes::grid::section),
     ("subpixel-depth", "who is in front inside a pixel: centre, search, exhaustive", axes::order::section),
+    ("subpixel-edges", "edges inside a surface: with samples or without", axes::edges::section),
     ("depth-bits", "bits of a depth and of its fraction", axes::depth::bits),
     ("depth-fraction", "fraction bits: drift over 16384 pixels", axes::depth::fraction),
     ("coordinates", "bits of a coordinate behind the point", axes::coordinates::section),
@@ -91,7 +92,7 @@ fn headlines(sections: &[Section]) -> Vec<String> {
             "combined" => section.findings.first().cloned(),
             "grid" => section.findings.first().map(|line| format!("Samples of a pixel: {line}")),
             "presets" => section.findings.last().map(|line| format!("Preset {line}")),
-            "subpixel-depth" => section.findings.last().cloned(),
+            "subpixel-depth" | "subpixel-edges" => section.findings.last().cloned(),
             _ => None,
         })
         .collect();

@@ -11,6 +11,10 @@ const DISTANCE: f64 = 3.2;
 /// Near and far plane of the studies' camera.
 const PLANES: [f64; 2] = [1.0, 1024.0];
 
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
 /// Three corners for each triangle, in eye space: x to the right, y up, looking down -z. The view is 90 degrees wide and
 /// high; x is narrowed so that pixels of a picture of `size` are square. `turn` is about the vertical, in degrees.
 #[must_use]
@@ -30,8 +34,6 @@ pub fn corners(mesh: &Mesh, size: [u32; 2], turn: f64) -> Vec<Corner> {
         let [x, y, z] = turned([0, 1, 2].map(|k| (position[k] - centre[k]) * scale));
         [x * narrow, y, z - DISTANCE]
     };
-    let cross =
-        |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let mut all = Vec::with_capacity(mesh.indices.len());
     for triangle in mesh.indices.as_chunks::<3>().0 {
         let places = triangle.map(place);
@@ -52,6 +54,9 @@ pub fn corners(mesh: &Mesh, size: [u32; 2], turn: f64) -> Vec<Corner> {
     }
     all
 }
+
+/// The colour of the mesh alone in full light.
+const BASE: [u8; 3] = [236, 226, 205];
 
 /// How often a texture goes round a mesh without coordinates of its own.
 const ROUND: f64 = 6.0;
@@ -83,10 +88,31 @@ pub fn textured(mesh: &Mesh, size: [u32; 2], turn: f64) -> Vec<Corner> {
     all
 }
 
+/// How much of the full light a surface gets that faces `normal`, of any length.
+fn light(normal: [f64; 3]) -> f64 {
+    let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt().max(1e-30);
+    let light = ((0.4 * normal[0] + 0.6 * normal[1] + 0.7 * normal[2]) / length).abs();
+    0.25 + 0.75 * light.min(1.0)
+}
+
+/// A colour in so much of the full light.
+fn lit(base: [u8; 3], light: f64) -> [u8; 3] {
+    base.map(|level| (f64::from(level) * light).round() as u8)
+}
+
 /// The same on the screen, each triangle in one colour by how it faces a light; `base` is the colour in full light.
 /// Triangles that would not fit the exact numbers are left out.
 #[must_use]
 pub fn facets(corners: &[Corner], size: [u32; 2], base: [u8; 3]) -> Vec<Facet> {
+    let colours = |three: &[Corner; 3]| {
+        let side = |k: usize| [0, 1, 2].map(|axis| f64::from(three[k].position[axis] - three[0].position[axis]));
+        [lit(base, light(cross(side(1), side(2)))); 3]
+    };
+    projected(corners, size, colours)
+}
+
+/// Triangles on the screen, in the colours that `colours` says.
+fn projected(corners: &[Corner], size: [u32; 2], colours: impl Fn(&[Corner; 3]) -> [[u8; 3]; 3]) -> Vec<Facet> {
     let [near, far] = PLANES;
     let project = |corner: &Corner| {
         let [x, y, z] = corner.position.map(f64::from);
@@ -97,22 +123,27 @@ pub fn facets(corners: &[Corner], size: [u32; 2], base: [u8; 3]) -> Vec<Facet> {
     };
     let facet = |three: &[Corner; 3]| {
         let at = three.each_ref().map(project);
-        let side = |k: usize| [0, 1, 2].map(|axis| f64::from(three[k].position[axis] - three[0].position[axis]));
-        let (a, b) = (side(1), side(2));
-        let face = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-        let length = face.iter().map(|c| c * c).sum::<f64>().sqrt().max(1e-30);
-        let light = ((0.4 * face[0] + 0.6 * face[1] + 0.7 * face[2]) / length).abs();
-        let colour = base.map(|level| (f64::from(level) * (0.25 + 0.75 * light.min(1.0))).round() as u8);
         let fits = at.iter().all(|(place, depth)| place.iter().all(|c| c.abs() <= REACH) && (0..=FAR).contains(depth));
-        fits.then(|| Facet { corners: at.map(|corner| corner.0), depths: at.map(|corner| corner.1), colour })
+        fits.then(|| Facet {
+            corners: at.map(|corner| corner.0),
+            depths: at.map(|corner| corner.1),
+            colours: colours(three),
+        })
     };
     corners.as_chunks::<3>().0.iter().filter_map(facet).collect()
 }
 
-/// The mesh alone.
+/// The mesh alone, with flat faces.
 #[must_use]
 pub fn scene(mesh: &Mesh, size: [u32; 2]) -> Scene {
-    Scene { size, facets: facets(&corners(mesh, size, 25.0), size, [236, 226, 205]) }
+    Scene { size, facets: facets(&corners(mesh, size, 25.0), size, BASE) }
+}
+
+/// The mesh alone, lit at its vertices, with colours between them; with flat faces if it has no normals.
+#[must_use]
+pub fn smooth(mesh: &Mesh, size: [u32; 2]) -> Scene {
+    let colours = |three: &[Corner; 3]| three.map(|corner| lit(BASE, light(corner.normal.map(f64::from))));
+    Scene { size, facets: projected(&corners(mesh, size, 25.0), size, colours) }
 }
 
 /// The mesh twice, turned against each other, so that the two cut each other everywhere.

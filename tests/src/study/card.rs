@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use super::scene::Scene;
 use super::truth::Truth;
-use crate::harness::{Events, Grid, Hidden, Options, Order, Screen, State, Subpixel};
+use crate::harness::{Edges, Events, Grid, Hidden, Options, Order, Screen, State, Subpixel};
 use crate::oracle::DepthFormat;
 
 /// Everything about a card that decides how accurate its visibility is, and how that is found out.
@@ -18,6 +18,8 @@ pub struct Setting {
     pub grid: Grid,
     /// How fragments of a pixel that share samples are ordered.
     pub order: Order,
+    /// Which edges have samples.
+    pub edges: Edges,
     /// Number format of depth.
     pub depth: DepthFormat,
     /// Bits of a pixel that coordinates are snapped to, 4 or 8.
@@ -27,12 +29,13 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// Every axis at its best: 64 samples, each with its depth; 31 bits of depth with 24 fraction bits; 1/256 pixel.
+    /// Every axis at its best: 64 samples at every edge, each with its depth; 31 bits of depth with 24 fraction bits; 1/256 pixel.
     #[must_use]
     pub fn best() -> Self {
         Self {
             grid: Grid::Grid8x8,
             order: Order::Exhaustive,
+            edges: Edges::All,
             depth: DepthFormat { bits: 31, fraction: 24 },
             coordinate_bits: 8,
             hidden: Hidden::default(),
@@ -51,7 +54,7 @@ impl Setting {
         Options {
             depth: self.depth,
             subpixel_bits: self.coordinate_bits,
-            subpixel: Subpixel { depth: self.order, ..Subpixel::on(self.grid) },
+            subpixel: Subpixel { depth: self.order, edges: self.edges, ..Subpixel::on(self.grid) },
             hidden: self.hidden,
             threads,
             ..Options::default()

@@ -1,7 +1,8 @@
-//! Scenes of opaque, flat triangles whose numbers are exact: what is drawn, before any rounding of the card.
+//! Scenes of opaque triangles whose numbers are exact: what is drawn, before any rounding of the card.
 //!
 //! Coordinates are whole 1/4096 pixels and depths whole 2^-24 of the range, so each is an f32 that the card reads without
-//! error, finer than any grid that it snaps to.
+//! error, finer than any grid that it snaps to. Colours run evenly over a triangle, on the screen, between whole levels at
+//! its corners.
 
 use crate::harness::{Random, RawVertex, Screen, State, Topology};
 
@@ -14,15 +15,15 @@ pub const REACH: i32 = (1 << 24) - 1;
 /// Units of a coordinate that is on the card's finest grid.
 const SNAPPED: i32 = UNITS / 256;
 
-/// A triangle in one colour.
+/// A triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Facet {
     /// x to the right and y down, 1/4096 pixel, within [`REACH`].
     pub corners: [[i32; 2]; 3],
     /// 2^-24 of the range, 0 near to [`FAR`].
     pub depths: [i32; 3],
-    /// Red, green, blue.
-    pub colour: [u8; 3],
+    /// Red, green, blue at each corner.
+    pub colours: [[u8; 3]; 3],
 }
 
 /// A picture to be drawn on black.
@@ -73,6 +74,14 @@ impl Kind {
     }
 }
 
+impl Facet {
+    /// Whether it is in one colour.
+    #[must_use]
+    pub fn is_flat(&self) -> bool {
+        self.colours[1..].iter().all(|colour| *colour == self.colours[0])
+    }
+}
+
 impl Scene {
     /// The same with vertices moved to the card's finest grid, 1/256 pixel: then the snap is no error.
     #[must_use]
@@ -90,24 +99,24 @@ impl Scene {
         self.size[0] as usize * self.size[1] as usize
     }
 
-    /// Draws it on a card, in its colours.
+    /// Draws it on a card, in its colours: interpolated if there is a triangle with more than one.
     pub fn draw(&self, screen: &mut Screen, state: &State) {
-        let colour =
-            |_: usize, facet: &Facet| u32::from_le_bytes([facet.colour[0], facet.colour[1], facet.colour[2], 255]);
-        self.draw_in(screen, state, colour);
+        let gouraud = !self.facets.iter().all(Facet::is_flat);
+        let colours = |_: usize, facet: &Facet| facet.colours.map(|[r, g, b]| u32::from_le_bytes([r, g, b, 255]));
+        self.draw_in(screen, &State { gouraud, ..*state }, colours);
     }
 
     /// Draws it with its position in the list, from 1, as colour.
     pub fn draw_numbers(&self, screen: &mut Screen, state: &State) {
         let pixels = screen.options().pixels;
-        self.draw_in(screen, state, |number, _| pixels.colour_of(number as u32 + 1));
+        self.draw_in(screen, state, |number, _| [pixels.colour_of(number as u32 + 1); 3]);
     }
 
-    fn draw_in(&self, screen: &mut Screen, state: &State, colour: impl Fn(usize, &Facet) -> u32) {
+    fn draw_in(&self, screen: &mut Screen, state: &State, colours: impl Fn(usize, &Facet) -> [u32; 3]) {
         let mut vertices = Vec::with_capacity(3 * self.facets.len());
         for (number, facet) in self.facets.iter().enumerate() {
-            let colour = colour(number, facet);
-            vertices.extend(facet.corners.iter().zip(facet.depths).map(|([x, y], z)| RawVertex {
+            let corners = facet.corners.iter().zip(facet.depths).zip(colours(number, facet));
+            vertices.extend(corners.map(|(([x, y], z), colour)| RawVertex {
                 position: [*x as f32 / UNITS as f32, *y as f32 / UNITS as f32, z as f32 / FAR as f32],
                 colour,
             }));
@@ -126,7 +135,7 @@ fn soup(size: [u32; 2], random: &mut Random) -> Facet {
     let (z, colour) = (random.int(FAR / 16, FAR / 2), colour(random));
     let corner = |random: &mut Random| place.map(|c| c + random.int(-6 * UNITS, 6 * UNITS));
     let corners = [corner(random), corner(random), corner(random)];
-    Facet { corners, depths: [0; 3].map(|_| z + random.int(-FAR / 64, FAR / 64)), colour }
+    Facet { corners, depths: [0; 3].map(|_| z + random.int(-FAR / 64, FAR / 64)), colours: [colour; 3] }
 }
 
 fn crossing(size: [u32; 2], random: &mut Random) -> Facet {
@@ -135,12 +144,12 @@ fn crossing(size: [u32; 2], random: &mut Random) -> Facet {
         let place = [x * f64::from(size[0]), y * f64::from(size[1])];
         place.map(|c| (c * f64::from(UNITS)) as i32 + random.int(-20 * UNITS, 20 * UNITS))
     });
-    Facet { corners, depths: [0; 3].map(|_| random.int(FAR / 16, FAR / 2)), colour }
+    Facet { corners, depths: [0; 3].map(|_| random.int(FAR / 16, FAR / 2)), colours: [colour; 3] }
 }
 
 /// A height field over the frame, cells of 4 pixels, corners moved by up to a pixel.
 fn terrain(size: [u32; 2], random: &mut Random, number: usize) -> Vec<Facet> {
-    let colour = [[230, 60, 20], [20, 90, 240]][number];
+    let colours = [[[230, 60, 20], [20, 90, 240]][number]; 3];
     let [columns, rows] = size.map(|side| side.div_ceil(4) as usize + 1);
     let vertices: Vec<([i32; 2], i32)> = (0..columns * rows)
         .map(|k| {
@@ -153,13 +162,28 @@ fn terrain(size: [u32; 2], random: &mut Random, number: usize) -> Vec<Facet> {
         [[a, b, c], [c, b, d]]
     };
     let cells = (0..columns * (rows - 1)).filter(|k| k % columns < columns - 1);
-    let facet = |three: [([i32; 2], i32); 3]| Facet { corners: three.map(|v| v.0), depths: three.map(|v| v.1), colour };
+    let facet =
+        |three: [([i32; 2], i32); 3]| Facet { corners: three.map(|v| v.0), depths: three.map(|v| v.1), colours };
     cells.flat_map(|k| cell(k).map(facet)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::harness::Options;
+
+    #[test]
+    fn draw_of_a_triangle_in_more_than_one_colour_interpolates() {
+        let (a, b, c) = ([0, 0], [16 * UNITS, 0], [0, 16 * UNITS]);
+        let colours = [[0; 3], [160, 0, 32], [0; 3]];
+        let scene = Scene { size: [4, 4], facets: vec![Facet { corners: [a, b, c], depths: [FAR / 2; 3], colours }] };
+        let mut screen = Screen::new(4, 4, &Options::default());
+        screen.clear();
+        scene.draw(&mut screen, &State::default());
+        // 10 levels of red and 2 of blue a pixel to the right, at the centres.
+        let row = [0x05_0001, 0x0F_0003, 0x19_0005, 0x23_0007];
+        assert!(screen.read().colour.chunks(4).all(|found| found.iter().zip(row).all(|(a, b)| a & 0x00FF_FFFF == b)));
+    }
 
     #[test]
     fn scenes_are_within_what_an_f32_carries() {

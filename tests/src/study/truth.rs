@@ -4,7 +4,8 @@
 //! Samples lie at the middles of C x R equal rectangles of the pixel, as the card's do; with many of them the mean is the
 //! true picture, with the card's own number it is what that number can show at best. Coverage follows the top-left rule
 //! on the unsnapped vertices. Of two triangles at a sample the one whose exact plane is nearer is seen, of equal ones the
-//! earlier: planes are compared in f64 where the difference is beyond the rounding of both, else as fractions.
+//! earlier: planes are compared in f64 where the difference is beyond the rounding of both, else as fractions. A sample
+//! has the colour of its own place, in f64: of a triangle in one colour exactly.
 //!
 //! Rows of pixels are spread over threads; the picture does not depend on how many.
 
@@ -25,7 +26,7 @@ pub struct Truth {
     /// Samples of a pixel.
     pub samples: u32,
     /// Sum over the samples of red, green and blue, row by row.
-    pub sums: Vec<[u32; 3]>,
+    pub sums: Vec<[f64; 3]>,
     /// What there is in each pixel.
     pub pixels: Vec<Pixel>,
     /// Who is seen at the sample nearest to the pixel's centre (at it, where the numbers of samples are odd); position in
@@ -46,7 +47,7 @@ impl Truth {
     /// Mean colour of a pixel in levels, 0..=255.
     #[must_use]
     pub fn mean(&self, pixel: usize) -> [f64; 3] {
-        self.sums[pixel].map(|sum| f64::from(sum) / f64::from(self.samples))
+        self.sums[pixel].map(|sum| sum / f64::from(self.samples))
     }
 
     /// Largest distance of a channel of an XRGB8888 pixel from the mean, levels.
@@ -66,8 +67,11 @@ impl Truth {
     /// The picture with levels rounded, XRGB8888.
     #[must_use]
     pub fn rounded(&self) -> Vec<u32> {
-        let level = |sum: u32| (2 * sum + self.samples) / (2 * self.samples);
-        self.sums.iter().map(|sum| level(sum[0]) << 16 | level(sum[1]) << 8 | level(sum[2])).collect()
+        let pixel = |pixel: usize| {
+            let [red, green, blue] = self.mean(pixel).map(|level| level.round() as u32);
+            red << 16 | green << 8 | blue
+        };
+        (0..self.sums.len()).map(pixel).collect()
     }
 }
 
@@ -87,7 +91,8 @@ struct Plane {
     gradient: [f64; 2],
     /// What rounding can do to a depth evaluated in f64.
     error: f64,
-    colour: [u32; 3],
+    /// Red, green and blue at the anchor, and their steps along x and y.
+    colour: [[f64; 3]; 3],
 }
 
 impl Plane {
@@ -118,6 +123,10 @@ impl Plane {
         ];
         let d = wide(area.abs());
         let gradient = slope.map(|slope| slope as f64 / d as f64);
+        let [first, second, third] = facet.colours.map(|colour| colour.map(f64::from));
+        let steps = |a: i64, b: i64| {
+            [0, 1, 2].map(|k| ((second[k] - first[k]) * a as f64 - (third[k] - first[k]) * b as f64) / area as f64)
+        };
         let extent = |axis: usize| f64::from(of(axis, i32::max)) - f64::from(of(axis, i32::min));
         // Two products, two sums, each good to 2^-53 of the largest number on the way; and as much again.
         let reach = gradient[0].abs() * extent(0) + gradient[1].abs() * extent(1) + f64::from(FAR);
@@ -131,12 +140,18 @@ impl Plane {
             z: z0,
             gradient,
             error: reach * 16.0 * f64::EPSILON,
-            colour: facet.colour.map(u32::from),
+            colour: [first, steps(dy2, dy1), steps(-dx2, -dx1)],
         })
     }
 
     fn depth(&self, x: i64, y: i64) -> f64 {
         self.z as f64 + self.gradient[0] * (x - self.anchor[0]) as f64 + self.gradient[1] * (y - self.anchor[1]) as f64
+    }
+
+    fn colour(&self, x: i64, y: i64) -> [f64; 3] {
+        let [first, across, down] = &self.colour;
+        let [dx, dy] = [x - self.anchor[0], y - self.anchor[1]].map(|way| way as f64);
+        [0, 1, 2].map(|k| first[k] + across[k] * dx + down[k] * dy)
     }
 
     fn exact(&self, x: i64, y: i64) -> Fraction {
@@ -191,7 +206,7 @@ struct Row {
     /// Who is seen, row of samples by row.
     held: Vec<u32>,
     depths: Vec<f64>,
-    sums: Vec<[u32; 3]>,
+    sums: Vec<[f64; 3]>,
     pixels: Vec<Pixel>,
     winners: Vec<u32>,
 }
@@ -199,7 +214,7 @@ struct Row {
 impl Row {
     fn new(width: u32, grid: [u32; 2], j: i64) -> Self {
         let samples = (width * grid[0] * grid[1]) as usize;
-        let (sums, pixels, winners) = (vec![[0; 3]; width as usize], vec![Pixel::default(); width as usize], vec![]);
+        let (sums, pixels, winners) = (vec![[0.0; 3]; width as usize], vec![Pixel::default(); width as usize], vec![]);
         Self {
             width,
             grid,
@@ -288,12 +303,14 @@ impl Row {
         for i in 0..self.width {
             let place = |column: u32, row: u32| (row * self.width * columns + i * columns + column) as usize;
             let first = self.held[place(0, 0)];
-            let mut sum = [0; 3];
+            let mut sum = [0.0; 3];
             let mut edge = false;
             for (column, row) in (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))) {
                 let seen = self.held[place(column, row)];
                 edge |= seen != first;
-                let colour = of(seen).map_or([0; 3], |plane| plane.colour);
+                let (y, x0, step) = self.place(row);
+                let x = x0 + i64::from(i * columns + column) * step;
+                let colour = of(seen).map_or([0.0; 3], |plane| plane.colour(x, y));
                 sum = [0, 1, 2].map(|k| sum[k] + colour[k]);
             }
             (self.sums[i as usize], self.pixels[i as usize].edge) = (sum, edge);
@@ -330,21 +347,39 @@ mod tests {
     }
 
     #[test]
+    fn truth_of_a_triangle_in_more_than_one_colour_is_the_mean_of_its_places() {
+        let unit = |x: i32, y: i32| [x * UNITS, y * UNITS];
+        // 10 levels of red a pixel to the right, 5 of blue a pixel down, from (-4, -4); in either order of the corners.
+        let [a, b, c] = [(unit(-4, -4), [0, 7, 0]), (unit(16, -4), [200, 7, 0]), (unit(-4, 16), [0, 7, 100])];
+        for three in [[a, b, c], [c, b, a]] {
+            let facet = Facet { corners: three.map(|v| v.0), depths: [FAR / 2; 3], colours: three.map(|v| v.1) };
+            let found = truth(&Scene { size: [2, 3], facets: vec![facet] }, [4, 2]);
+            for pixel in 0..6 {
+                let expected = [10.0 * (4.5 + f64::from(pixel % 2)), 7.0, 5.0 * (4.5 + f64::from(pixel / 2))];
+                let mean = found.mean(pixel as usize);
+                // Rounding of f64 alone.
+                assert!((0..3).all(|k| (mean[k] - expected[k]).abs() < 1e-9), "{pixel}: {mean:?}, not {expected:?}");
+            }
+        }
+    }
+
+    #[test]
     fn truth_of_two_planes_that_cross_counts_both_and_marks_the_pixel() {
         let (a, b, c) = ([-8192, -8192], [40_960, -8192], [-8192, 40_960]);
-        let facet = |depths, colour| Facet { corners: [a, b, c], depths, colour };
+        let facet = |depths, colour| Facet { corners: [a, b, c], depths, colours: [colour; 3] };
         // They meet where x = 2 pixels; left of it the first is nearer.
         let facets = vec![facet([0, 12 << 20, 0], [255, 0, 0]), facet([4 << 20, 4 << 20, 4 << 20], [0, 0, 255])];
         let scene = Scene { size: [4, 1], facets };
 
         let found = truth(&scene, [4, 4]);
 
-        assert_eq!(found.sums, [[16 * 255, 0, 0], [16 * 255, 0, 0], [0, 0, 16 * 255], [0, 0, 16 * 255]]);
+        let all = 16.0 * 255.0;
+        assert_eq!(found.sums, [[all, 0.0, 0.0], [all, 0.0, 0.0], [0.0, 0.0, all], [0.0, 0.0, all]]);
         assert!(found.pixels.iter().all(|pixel| !pixel.crossing && !pixel.edge), "the line lies between pixels");
         let mut moved = scene;
         moved.facets[1].depths = [(4 << 20) + (1 << 19); 3];
         let found = truth(&moved, [8, 8]);
         assert_eq!(found.pixels.iter().map(|pixel| pixel.crossing).collect::<Vec<_>>(), [false, false, true, false]);
-        assert_eq!(found.sums[2], [32 * 255, 0, 32 * 255]);
+        assert_eq!(found.sums[2], [32.0 * 255.0, 0.0, 32.0 * 255.0]);
     }
 }

@@ -4,6 +4,7 @@ pub(super) mod bypass;
 pub(super) mod combined;
 pub(super) mod coordinates;
 pub(super) mod depth;
+pub(super) mod edges;
 pub(super) mod fidelity;
 pub(super) mod filter;
 pub(super) mod grid;
@@ -142,8 +143,13 @@ fn distances(truth: &Truth, colour: &[u32]) -> Vec<f64> {
 
 /// A magnified crop of where the first picture is worst; a row for each: true picture, that of the card, difference.
 fn magnified(title: &str, truth: &Truth, shown: &[(&str, &[u32])], caption: &str) -> Strip {
+    let at = shown.first().map_or([0, 0], |(_, bad)| worst(&distances(truth, bad), truth.size));
+    magnified_at(at, title, truth, shown, caption)
+}
+
+/// The same of the crop at `at`.
+fn magnified_at(at: [u32; 2], title: &str, truth: &Truth, shown: &[(&str, &[u32])], caption: &str) -> Strip {
     let size = truth.size;
-    let at = shown.first().map_or([0, 0], |(_, bad)| worst(&distances(truth, bad), size));
     let panel = |name: String, whole: &Picture| Panel { name, picture: cropped(whole, at, CROP) };
     let mut panels = Vec::new();
     for (name, colour) in shown {

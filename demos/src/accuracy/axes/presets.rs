@@ -1,8 +1,8 @@
 //! The presets: what each costs and how far its pictures are from the true ones, with the bounds that are promised.
 
-use zga_abi::format::{SubpixelDepth, SubpixelGrid};
+use zga_abi::format::{SubpixelDepth, SubpixelEdges, SubpixelGrid};
 use zga_driver::Preset;
-use zga_tests::harness::{Grid, Order, Random};
+use zga_tests::harness::{Edges, Grid, Order, Random};
 use zga_tests::oracle::DepthFormat;
 use zga_tests::study::card::Setting;
 use zga_tests::study::scene::{Kind, Scene};
@@ -52,8 +52,12 @@ fn setting(preset: Preset) -> Setting {
         SubpixelDepth::Search => Order::Search,
         SubpixelDepth::Exhaustive => Order::Exhaustive,
     };
+    let edges = match antialias.edges {
+        SubpixelEdges::All => Edges::All,
+        SubpixelEdges::Borders => Edges::Borders,
+    };
     let depth = DepthFormat { bits: depth.bits(), fraction: depth.fraction() };
-    Setting { grid, order, depth, coordinate_bits: preset.subpixel_bits(), ..Setting::best() }
+    Setting { grid, order, edges, depth, coordinate_bits: preset.subpixel_bits(), ..Setting::best() }
 }
 
 /// The scenes that the promises are about.
