@@ -3,7 +3,7 @@
 //! Two triangles share an edge if they lie on both sides of it, face the same way, and agree at both its ends in all that
 //! vertices say (place, depth, colour, normal, place in the texture) and in the state they are drawn with: the surface
 //! goes on across the edge, and so do its colours. In order of submission an edge finds the last one that it can share
-//! and that no other has found. What is not shared is a *border*. A triangle of one colour all over shares none: where its
+//! and that no other has found, of the [`SEEK`] last between its places. What is not shared is a *border*. A triangle of one colour all over shares none: where its
 //! neighbour has that colour too there is nothing to average, and else a seam.
 //!
 //! Inputs from: [`super::scene`]. Outputs to: [`super::inside`]. Clocks: one for each edge of a triangle that can share
@@ -16,6 +16,8 @@ use crate::geometry::ScreenVertex;
 use crate::geometry::triangle::doubled_area;
 use crate::shading::plane::Interpolation;
 use bitflags::bitflags;
+use std::collections::hash_map::RandomState;
+use std::hash::{BuildHasher, Hasher};
 
 bitflags! {
     /// What is known of an item's edges.
@@ -47,6 +49,9 @@ impl Sides {
     }
 }
 
+/// So many edges between the same two places are looked at for one that can be shared.
+pub(super) const SEEK: usize = 16;
+
 /// An edge that has found none to share yet.
 #[derive(Clone, Copy, Debug, Default)]
 struct Waiting {
@@ -64,6 +69,8 @@ pub struct Edges {
     /// The first that waits of each place of the table, plus 1.
     heads: Vec<u32>,
     waiting: Vec<Waiting>,
+    /// Where places are hashed from: another for each table, so that nobody can know which of them meet.
+    seed: Option<u64>,
     /// The first of `waiting` that means nothing, plus 1; they go on as the others do.
     free: u32,
 }
@@ -86,6 +93,7 @@ impl Edges {
         self.waiting.clear();
         self.free = 0;
         let shift = 32 - self.heads.len().trailing_zeros();
+        let seed = *self.seed.get_or_insert_with(|| RandomState::new().build_hasher().finish());
         let (mut waits, mut most) = (0_u64, 0_u64);
         for (number, item) in (0..).zip(&scene.items) {
             let sides = Sides::of(setting, item, &scene.draws[item.draw as usize]);
@@ -94,11 +102,12 @@ impl Edges {
                 continue;
             }
             counts.edges += 3;
-            let places = item.vertices.map(|v| place(&v));
+            let places = item.vertices.map(|v| mixed(u64::from(v.x as u32) << 32 | u64::from(v.y as u32), seed));
+            let hash = |from: usize, to: usize| (mixed(places[from].rotate_left(24), places[to]) >> 32) as u32;
             for k in 0..3 {
-                let hash = (places[k].wrapping_add(places[after(k)]).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32) as u32;
-                let head = if shift == 32 { 0 } else { hash >> shift } as usize;
-                waits = if self.join(scene, hash, head, number, k) { waits - 1 } else { waits + 1 };
+                // It looks for one that runs the other way.
+                let hashes = [hash(after(k), k), hash(k, after(k))];
+                waits = if self.join(scene, hashes, shift, number, k) { waits - 1 } else { waits + 1 };
             }
             most = most.max(waits);
         }
@@ -117,20 +126,22 @@ impl Edges {
 
     /// Has an edge share another that waits, or wait; whether it shares one.
     #[inline(always)]
-    fn join(&mut self, scene: &Scene, hash: u32, head: usize, number: u32, k: usize) -> bool {
+    fn join(&mut self, scene: &Scene, [wanted, own]: [u32; 2], shift: u32, number: u32, k: usize) -> bool {
+        let place = |hash: u32| if shift == 32 { 0 } else { (hash >> shift) as usize };
         let item = &scene.items[number as usize];
-        let mut link = &mut self.heads[head];
         // What links to the one that is looked at: 0 the head, else a place plus 1.
-        let (mut before, mut at) = (0_u32, *link);
-        while at != 0 {
+        let (mut before, mut at, mut seen) = (0_u32, self.heads[place(wanted)], 0);
+        while at != 0 && seen < SEEK {
             let Waiting { hash: other, edge, next } = self.waiting[at as usize - 1];
-            if other == hash {
-                let (other, side) = ((edge / 4) as usize, (edge % 4) as usize);
+            let (other_item, side) = ((edge / 4) as usize, (edge % 4) as usize);
+            if other == wanted && lie_together(item, k, &scene.items[other_item], side) {
+                seen += 1;
+                let other = other_item;
                 let facing = Sides::SMOOTH | Sides::BACK;
                 let alike = self.sides[other] & facing == self.sides[number as usize] & facing;
                 if alike && share(scene, item, k, &scene.items[other], side) {
                     match before {
-                        0 => *link = next,
+                        0 => self.heads[place(wanted)] = next,
                         before => self.waiting[before as usize - 1].next = next,
                     }
                     self.waiting[at as usize - 1].next = self.free;
@@ -142,8 +153,8 @@ impl Edges {
             }
             (before, at) = (at, next);
         }
-        let new = Waiting { hash, edge: number * 4 + k as u32, next: *link };
-        link = &mut self.heads[head];
+        let link = &mut self.heads[place(own)];
+        let new = Waiting { hash: own, edge: number * 4 + k as u32, next: *link };
         match self.free {
             0 => {
                 self.waiting.push(new);
@@ -187,12 +198,18 @@ impl Sides {
     }
 }
 
-/// A number for a place, so that the sum of two has few others.
+/// Two numbers as one that few others have.
 #[inline(always)]
-fn place(v: &ScreenVertex) -> u64 {
-    let place = u64::from(v.x as u32) | u64::from(v.y as u32) << 32;
-    let mixed = place.wrapping_mul(0xD6E8_FEB8_6659_FD93);
-    mixed ^ mixed >> 32
+fn mixed(a: u64, b: u64) -> u64 {
+    let product = (a ^ b).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    product ^ product >> 29
+}
+
+/// Whether edge `j` of one triangle lies where edge `k` of another does, and runs the other way.
+#[inline(always)]
+fn lie_together(a: &Item, j: usize, b: &Item, k: usize) -> bool {
+    let together = |v: &ScreenVertex, w: &ScreenVertex| v.x == w.x && v.y == w.y;
+    together(&a.vertices[j], &b.vertices[after(k)]) && together(&a.vertices[after(j)], &b.vertices[k])
 }
 
 /// Whether edge `j` of one triangle and edge `k` of another that faces the same way can be shared.

@@ -32,6 +32,9 @@ const SHEETS: usize = 4;
 /// Most triangles of a tile that are: a count of 16 bits holds all their edges.
 const MOST: usize = 4096;
 
+/// Most triangles in all tiles of a band: 4 MiB a thread.
+const VISITS: usize = 1 << 18;
+
 /// A triangle in a tile.
 #[derive(Clone, Copy, Debug)]
 struct Visit {
@@ -334,10 +337,14 @@ impl Slant {
     }
 }
 
-/// Whether there is much inside surfaces: of half of a band's triangles all edges are shared.
+/// Whether there is much inside surfaces, and memory for it: of half of a band's triangles all edges are shared, and they
+/// meet few tiles each.
 fn is_worth_it(input: &Input<'_>) -> bool {
     let inner = |entry: &&Entry| input.edges[entry.number as usize].contains(Sides::INNER);
-    !input.edges.is_empty() && 2 * input.items.iter().filter(inner).count() > input.items.len()
+    let tiles = |entry: &Entry| usize::from(entry.to[0] - entry.from[0]) / LANES + 2;
+    !input.edges.is_empty()
+        && 2 * input.items.iter().filter(inner).count() > input.items.len()
+        && input.items.iter().map(tiles).sum::<usize>() <= VISITS
 }
 
 /// No depth of an item is farther, as [`Entry::nearest`] has it.

@@ -4,7 +4,7 @@
 
 use super::band::{Input, Resolved, Work};
 use super::bands::Entry;
-use super::edges::{Sides, share};
+use super::edges::{SEEK, Sides, share};
 use super::left::covers_centre;
 use super::lists::Fragment;
 use super::piece::{Cover, Piece};
@@ -172,9 +172,9 @@ pub fn sides(setting: &Setting, scene: &Scene, counts: &mut Counts) -> Vec<Sides
                 let back = |item: u32| all[item as usize].contains(Sides::BACK);
                 back(other) == back(number) && share(scene, item, k, &scene.items[other as usize], side)
             };
-            match others.iter().rposition(fits) {
+            match others.iter().rev().take(SEEK).position(fits) {
                 Some(place) => {
-                    let (other, side) = others.remove(place);
+                    let (other, side) = others.remove(others.len() - 1 - place);
                     waits -= 1;
                     all[other as usize].insert(Sides::from_bits_retain(1 << side));
                     all[number as usize].insert(Sides::from_bits_retain(1 << k));

@@ -3,7 +3,7 @@
 
 use super::super::band::{Input, LINES, Resolved, Work};
 use super::super::bands::Bands;
-use super::super::edges::{Edges, Sides};
+use super::super::edges::{Edges, SEEK, Sides};
 use super::super::grid::Grid;
 use super::super::inside::meets_border;
 use super::super::scene::{Item, Kind, Rule, Scene};
@@ -216,4 +216,30 @@ fn inside_of_a_surface_is_not_looked_at_whatever_lies_behind() {
     assert!(with < looked + 4 * (active_with - active + 16) as u32, "{with} looked at, {looked} without");
     let (all, _) = looked_at(&scene(&[Mesh { odd: vec![4; 72], ..smooth() }], Some(DepthTest::LESS), false));
     assert_eq!(all, 128 * LINES as u32, "no edge is shared");
+}
+
+#[test]
+fn an_edge_looks_at_so_many_between_its_places() {
+    let z = 500;
+    let corner = |x: i32, y: i32, colour: u32| ScreenVertex { x: 256 * x, y: 256 * y, z, colour, reciprocal_w: 1.0 };
+    let triangle = |colour: u32| [corner(0, 0, colour), corner(20, 0, 1), corner(0, 20, 2)];
+    for (others, shares) in [(SEEK - 1, true), (SEEK, false)] {
+        let mut scene = scene(&[], Some(DepthTest::LESS), false);
+        let state = DrawState { scissor: AREA, ..state(Effects::ANTI_ALIAS, 0) };
+        let test = Some(DepthTest::LESS);
+        let taken = scene.draw(&state, test, Interpolation::Affine, AlphaRule::Vertices).expect("taken");
+        let mut push = |vertices| {
+            taken.items.push(Item { vertices, draw: taken.draw, number: 0, kind: Kind::Masked });
+        };
+        push(triangle(0));
+        // Their edges from (20, 0) to (0, 20) lie there too, in other colours.
+        (0..others as u32).for_each(|n| push([corner(1, 1, 9), corner(20, 0, 10 + n), corner(0, 20, 2)]));
+        push([corner(20, 20, 3), corner(0, 20, 2), corner(20, 0, 1)]);
+        let setting = setting_of(Grid::G8X8, SubpixelDepth::Search, Rule::Nearest, 24);
+        let (mut found, mut expected) = (Edges::default(), Edges::default());
+        found.find(&setting, &scene, &mut Counts::default());
+        expected.specify(&setting, &scene, &mut Counts::default());
+        assert_eq!(found.sides(), expected.sides());
+        assert_eq!(found.sides()[0].shares(1), shares, "{others} between");
+    }
 }
