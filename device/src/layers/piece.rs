@@ -40,6 +40,8 @@ pub struct Piece {
     pub mode: BlendMode,
     /// Place of its draw in the scene.
     draw: u32,
+    /// Its item's number in what the colours of the draw go through.
+    shading: u32,
     /// Its place among the parts of its tile.
     number: u32,
     /// Pixels that it may change.
@@ -196,7 +198,7 @@ impl Part {
             return None;
         }
         let (plane, ItemDraw { test, mode, .. }) = (shape.plane(format), draw);
-        let piece = Piece { shape, plane, steep, test: *test, mode: *mode, draw: item.draw, number: 0, area };
+        let piece = Piece { shape, plane, steep, test: *test, mode: *mode, draw: item.draw, shading: item.number, number: 0, area };
         Some(if draw.is_opaque(v) { Part::Cover(piece) } else { Part::Layer(piece) })
     }
 }
@@ -205,7 +207,7 @@ impl Piece {
     /// Its colours.
     #[must_use]
     pub fn colours(&self, draws: &[ItemDraw]) -> Colours {
-        Colours(colour_plane(&self.shape, &draws[self.draw as usize].shade()))
+        Colours(colour_plane(&self.shape, &draws[self.draw as usize].shade(self.shading)))
     }
 
     /// Its stencil test, where it has one.
@@ -218,7 +220,7 @@ impl Piece {
     #[must_use]
     pub fn is_hole(&self, draws: &[ItemDraw], x: i32, y: i32) -> bool {
         let draw = &draws[self.draw as usize];
-        draw.has_holes() && colour_plane(&self.shape, &draw.shade()).is_hole(x, y)
+        draw.has_holes() && colour_plane(&self.shape, &draw.shade(self.shading)).is_hole(x, y)
     }
 
     /// Counts that the colours of `pixels` of its pixels were made.

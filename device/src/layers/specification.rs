@@ -54,7 +54,7 @@ pub fn compose(setting: &Setting, scene: &Scene, colours: &mut [u32], depths: &[
                 continue;
             };
             if draw.is_opaque(&item.vertices) {
-                if !(draw.has_holes() && colour_plane(shape, &draw.shade()).is_hole(x, y)) {
+                if !(draw.has_holes() && colour_plane(shape, &draw.shade(item.number)).is_hole(x, y)) {
                     fragments.clear();
                     (came, tests) = (0, StencilCounts::default());
                 }
@@ -82,11 +82,12 @@ pub fn compose(setting: &Setting, scene: &Scene, colours: &mut [u32], depths: &[
         let mut pixel = Pixel { words: colours, setting, x: x as usize, y: y as usize };
         let mut colour = pixel.get();
         for &Fragment { number, .. } in &fragments {
-            let draw = &scene.draws[scene.items[number as usize].draw as usize];
+            let item = &scene.items[number as usize];
+            let draw = &scene.draws[item.draw as usize];
             let Some(shape) = &shapes[number as usize] else {
                 continue;
             };
-            let source = colour_plane(shape, &draw.shade());
+            let source = colour_plane(shape, &draw.shade(item.number));
             counts.count_shaded(draw, 1);
             let source = if source.is_hole(x, y) { 0 } else { source.colour(x, y) };
             colour = blend::over(draw.mode, colour, source);

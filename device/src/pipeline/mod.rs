@@ -24,7 +24,6 @@ use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::{Assembler, GeometryCounts, List, Widths};
 use crate::geometry::fetch::{Fetch, VertexLight};
 use crate::geometry::transform::Transform;
-use crate::hidden::held::HeldShading;
 use crate::hidden::stencil;
 use crate::hidden::systolic::Waves;
 use crate::hidden::z_buffer;
@@ -429,9 +428,10 @@ impl Pipeline {
                 let mut vertices = std::mem::take(&mut self.parameters);
                 vertices.clear();
                 vertices.extend((before..first).map(|number| fetch.primitive(draw.topology, number)));
-                setting.shading = Some(Arc::new(DrawShading { pixel: Arc::clone(pixel), first: before, vertices }));
+                let both = Arc::new(DrawShading { pixel: Arc::clone(pixel), first: before, vertices });
+                self.scene.shade(taken_before, &both);
+                setting.shading = Some(both);
                 path.set_shading(&setting);
-                self.scene.shade(taken_before, |number| HeldShading::of(&setting, number));
             }
             match fast {
                 Some(level) => self.draw_bins(level, memory, &target, &setting, &path, account),

@@ -112,6 +112,9 @@ impl Pipeline {
             charge(&counts, account);
             resolved = stopped;
         }
+        if let Some(vertices) = self.scene.take_parameters() {
+            self.parameters = vertices;
+        }
         self.scene.begin();
         self.map = map.or(self.map.take());
         resolved

@@ -223,9 +223,8 @@ pub(super) fn share(scene: &Scene, a: &Item, j: usize, b: &Item, k: usize) -> bo
     if !ends.iter().all(corner) {
         return false;
     }
-    let (first, second) = (&scene.draws[a.draw as usize], &scene.draws[b.draw as usize]);
-    let flat = first.interpolation == Interpolation::Flat;
+    let flat = scene.draws[a.draw as usize].interpolation == Interpolation::Flat;
     let colours = |&(j, k): &(usize, usize)| a.vertices[j].colour == b.vertices[k].colour;
     let coloured = if flat { colours(&(0, 0)) } else { ends.iter().all(colours) };
-    coloured && (a.draw == b.draw || first.goes_on_in(second, ends))
+    coloured && scene.goes_on(a, b, ends)
 }

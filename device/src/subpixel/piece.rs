@@ -82,6 +82,8 @@ pub struct Piece {
     pub item: u32,
     /// Place of its draw.
     pub draw: u32,
+    /// Its item's number in what the colours of the draw go through.
+    pub number: u32,
     /// It may be translucent or have holes somewhere: it hides nothing.
     pub layer: bool,
     /// The path draws it too.
@@ -115,6 +117,7 @@ impl Piece {
         let mut piece = Piece {
             item: number,
             draw: item.draw,
+            number: item.number,
             layer: !draw.is_opaque(v) || draw.has_holes(),
             drawn: draw.is_opaque(v),
             plain: plain(v, draw),

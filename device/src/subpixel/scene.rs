@@ -12,10 +12,12 @@ use crate::geometry::ScreenVertex;
 use crate::geometry::assembly::{Point, Sink};
 use crate::geometry::line::Line;
 use crate::geometry::triangle::Triangle;
-use crate::hidden::held::HeldShading;
 use crate::hidden::z_buffer::DepthTest;
+use crate::hidden::z_buffer::band::DrawShading;
+use crate::shading::parameters::Parameters;
 use crate::shading::pixel::AlphaRule;
 use crate::shading::plane::{Interpolation, Shade};
+use std::sync::Arc;
 use zga_abi::Effects;
 use zga_abi::format::{BlendMode, DepthFunction};
 use zga_firmware::checked::{Clear, DrawState, Rectangle, StencilTest};
@@ -45,13 +47,13 @@ pub struct Item {
     pub vertices: [ScreenVertex; 3],
     /// Its place in [`Scene::draws`].
     pub draw: u32,
-    /// Its number in the draw.
+    /// Its number in the draw's [`ItemDraw::shading`].
     pub number: u32,
     /// What it covers.
     pub kind: Kind,
 }
 
-/// What the items of a draw share, or what a clear does. A primitive whose colours go through more has one of its own.
+/// What the items of a draw share, or what a clear does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ItemDraw {
     /// Depth test; `None` where depth is not called for: everything passes, no depth is stored.
@@ -59,7 +61,7 @@ pub struct ItemDraw {
     /// Which colour interpolators are called.
     pub interpolation: Interpolation,
     /// What interpolated colours go through.
-    pub shading: Option<HeldShading>,
+    pub shading: Option<Arc<DrawShading>>,
     /// Fragments with an alpha below 255 are translucent.
     pub blend: bool,
     /// How they are combined with what lies behind them.
@@ -77,26 +79,19 @@ pub struct ItemDraw {
 }
 
 impl ItemDraw {
-    /// Whether what is drawn goes on across an edge in an item of `other`, where corners of the two are one; these are
-    /// given by their numbers.
+    /// Whether the state that items are drawn with is that of `other`.
     #[must_use]
-    pub(super) fn goes_on_in(&self, other: &ItemDraw, corners: [(usize, usize); 2]) -> bool {
-        let shading = match (&self.shading, &other.shading) {
-            (None, None) => true,
-            (Some(mine), Some(others)) => {
-                mine.pixel == others.pixel && corners.iter().all(|&(j, k)| mine.vertices[j] == others.vertices[k])
-            }
-            _ => false,
-        };
-        shading
+    fn is_like(&self, other: &ItemDraw) -> bool {
+        let [mine, others] = [self, other].map(|draw| draw.shading.as_ref().map(|shading| &shading.pixel));
+        mine == others
             && (self.test, self.interpolation, self.mode, self.tag)
                 == (other.test, other.interpolation, other.mode, other.tag)
     }
 
-    /// How the pixels of an item get their colours.
+    /// How the pixels of item `number` get their colours.
     #[must_use]
-    pub fn shade(&self) -> Shade<'_> {
-        Shade { interpolation: self.interpolation, pixel: self.shading.as_ref().map(HeldShading::parts) }
+    pub fn shade(&self, number: u32) -> Shade<'_> {
+        Shade { interpolation: self.interpolation, pixel: self.shading.as_ref().map(|shading| shading.of(number)) }
     }
 
     /// What decides whether an item is translucent.
@@ -363,13 +358,50 @@ impl Scene {
         };
     }
 
+    /// Whether what is drawn goes on across an edge of item `a` in item `b`, where corners of the two are one; these are
+    /// given by their numbers.
+    #[must_use]
+    #[inline(always)]
+    pub(super) fn goes_on(&self, a: &Item, b: &Item, corners: [(usize, usize); 2]) -> bool {
+        let [first, second] = [a, b].map(|item| &self.draws[item.draw as usize]);
+        let carried = match (&first.shading, &second.shading) {
+            (Some(mine), Some(others)) => {
+                let (mine, others) = (mine.of(a.number).1, others.of(b.number).1);
+                corners.iter().all(|&(j, k)| mine[j] == others[k])
+            }
+            _ => true,
+        };
+        carried && (a.draw == b.draw || first.is_like(second))
+    }
+
     /// Gives the items from place `first` on, all of one draw, what their colours go through.
-    pub fn shade(&mut self, first: usize, shading: impl Fn(u32) -> Option<HeldShading>) {
-        for item in &mut self.items[first..] {
-            let draw = ItemDraw { shading: shading(item.number), ..self.draws[item.draw as usize].clone() };
-            item.draw = self.draws.len() as u32;
-            self.draws.push(draw);
+    pub fn shade(&mut self, first: usize, shading: &Arc<DrawShading>) {
+        let Some(draw) = self.items.get(first).map(|item| item.draw as usize) else {
+            return;
+        };
+        // A draw of which little is taken is not held for that: memory is bounded by items.
+        let shading = if 2 * (self.items.len() - first) < shading.vertices.len() {
+            let items = &mut self.items[first..];
+            let vertices = items.iter().map(|item| *shading.of(item.number).1).collect();
+            items.iter_mut().zip(0..).for_each(|(item, place)| item.number = place);
+            Arc::new(DrawShading { pixel: Arc::clone(&shading.pixel), first: 0, vertices })
+        } else {
+            Arc::clone(shading)
+        };
+        let with = ItemDraw { shading: Some(shading), ..self.draws[draw].clone() };
+        // What came before the batch may share the draw.
+        if first > 0 && self.items[first - 1].draw as usize == draw {
+            self.items[first..].iter_mut().for_each(|item| item.draw = self.draws.len() as u32);
+            self.draws.push(with);
+        } else {
+            self.draws[draw] = with;
         }
+    }
+
+    /// Memory for parameters that nobody needs any more; the scene is over.
+    pub fn take_parameters(&mut self) -> Option<Vec<Parameters>> {
+        let shadings = self.draws.drain(..).filter_map(|draw| Arc::into_inner(draw.shading?));
+        shadings.map(|shading| shading.vertices).max_by_key(Vec::capacity)
     }
 
     /// A clear; `whole` if it is of all pixels, `planes` if it is of all planes that the target has.

@@ -102,7 +102,8 @@ impl Shader {
     fn plane(&mut self, source: Source<'_>, piece: u32) -> &ColourPlane {
         let place = &mut self.place[piece as usize];
         if *place == 0 {
-            self.planes.push(source.pieces[piece as usize].colours(&source.draw(piece).shade()));
+            let set_up = &source.pieces[piece as usize];
+            self.planes.push(set_up.colours(&source.draw(piece).shade(set_up.number)));
             *place = self.planes.len() as u32;
         }
         &self.planes[*place as usize - 1]

@@ -61,7 +61,7 @@ pub struct StencilSetting {
 }
 
 /// What the colours of a batch of primitives go through.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct DrawShading {
     /// The same for all.
     pub pixel: Arc<PixelShading>,
@@ -69,6 +69,15 @@ pub struct DrawShading {
     pub first: u32,
     /// What the vertices of each carry.
     pub vertices: Vec<Parameters>,
+}
+
+impl DrawShading {
+    /// What the colours of primitive `number` of the draw go through.
+    #[must_use]
+    #[inline(always)]
+    pub fn of(&self, number: u32) -> (&Arc<PixelShading>, &Parameters) {
+        (&self.pixel, &self.vertices[(number - self.first) as usize])
+    }
 }
 
 /// Memory of one thread that draws bands.
@@ -97,8 +106,7 @@ impl Setting {
     /// How the pixels of primitive `number` of the draw get their colours.
     #[must_use]
     pub fn shade(&self, number: u32) -> Shade<'_> {
-        let pixel = self.shading.as_deref().map(|draw| (&draw.pixel, &draw.vertices[(number - draw.first) as usize]));
-        Shade { interpolation: self.interpolation, pixel }
+        Shade { interpolation: self.interpolation, pixel: self.shading.as_ref().map(|draw| draw.of(number)) }
     }
 
     /// Whether the texture has holes.
