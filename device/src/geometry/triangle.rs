@@ -78,7 +78,11 @@ impl Triangle {
     #[inline(always)]
     pub fn outlines<const N: usize>(v: &[ScreenVertex; 3], grids: [([u32; 2], i32); N]) -> [Option<Triangle>; N] {
         let sides = Sides::new(v);
-        grids.map(|(pitch, top)| sides.outline(pitch, top))
+        let mut outlines = [None; N];
+        for (outline, (pitch, top)) in outlines.iter_mut().zip(grids) {
+            *outline = sides.outline(pitch, top);
+        }
+        outlines
     }
 
     /// Columns covered on row `y`, `[first, beyond)`; `y` in `rows[0]..rows[2]`.
@@ -124,8 +128,9 @@ impl<'a> Sides<'a> {
     #[inline(always)]
     fn outline(&self, pitch: [u32; 2], top: i32) -> Option<Triangle> {
         let [above, middle, below] = self.vertices;
-        let rows = [above.y, middle.y, below.y].map(|y| first_sample(y, pitch[1]).max(top));
-        let columns = self.extent.map(|x| first_sample(x, pitch[0]));
+        let row = |y: i32| first_sample(y, pitch[1]).max(top);
+        let rows = [row(above.y), row(middle.y), row(below.y)];
+        let columns = [first_sample(self.extent[0], pitch[0]), first_sample(self.extent[1], pitch[0])];
         if rows[0] == rows[2] || columns[0] == columns[1] || !self.open {
             return None;
         }

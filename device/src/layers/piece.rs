@@ -198,7 +198,17 @@ impl Part {
             return None;
         }
         let (plane, ItemDraw { test, mode, .. }) = (shape.plane(format), draw);
-        let piece = Piece { shape, plane, steep, test: *test, mode: *mode, draw: item.draw, shading: item.number, number: 0, area };
+        let piece = Piece {
+            shape,
+            plane,
+            steep,
+            test: *test,
+            mode: *mode,
+            draw: item.draw,
+            shading: item.number,
+            number: 0,
+            area,
+        };
         Some(if draw.is_opaque(v) { Part::Cover(piece) } else { Part::Layer(piece) })
     }
 }

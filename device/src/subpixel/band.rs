@@ -17,6 +17,7 @@ use super::hide::{Depths, OPEN, Span, UNTOUCHED};
 use super::inside::Inside;
 use super::left;
 use super::lists::{Fragment, Lists};
+use super::looked::Looked;
 use super::map::Reason;
 use super::parts::Resolver;
 use super::piece::{Cover, Piece, extent};
@@ -57,7 +58,9 @@ pub struct Work {
     pub(super) depths: Vec<Depths>,
     /// Whole covers of a pixel, where no rule says which hide which.
     pub(super) stacked: Vec<u8>,
-    /// Items of the band from the nearest to the farthest, so far as that may save time.
+    /// Items of the band that may be where fragments are looked for.
+    found: Vec<Entry>,
+    /// The same from the nearest to the farthest, so far as that may save time.
     order: Vec<Entry>,
     /// Fragments of one pixel.
     list: Vec<Fragment>,
@@ -84,6 +87,8 @@ pub struct Input<'a> {
     pub items: &'a [Entry],
     /// What is known of the edges of each item of the scene; empty if all are anti-aliased.
     pub edges: &'a [Sides],
+    /// The first item of the surface that each is part of; the specification has no use for that.
+    pub surfaces: &'a [u32],
     /// First line.
     pub top: i32,
     /// Lines.
@@ -175,30 +180,38 @@ impl Resolved {
     }
 }
 
-/// Buckets that items are sorted into by their depth: few, so that neighbours stay together in memory.
+/// Buckets that items are sorted into by their depth: few, so that surfaces stay together in memory.
 const BUCKETS: usize = 128;
 
-/// Sorts the items of a band from the nearest to the farthest, so well as the buckets have it.
-fn sort(input: &Input<'_>, order: &mut Vec<Entry>) {
+/// Puts the items of a band that may be where fragments are looked for in order, from the nearest to the farthest, so well
+/// as the buckets have it; of each what lies there.
+#[inline(always)]
+fn sort<S: Simd>(simd: S, input: &Input<'_>, looked: &Looked, [found, order]: [&mut Vec<Entry>; 2]) {
     order.clear();
     if input.setting.rule == Rule::InOrder {
         order.extend_from_slice(input.items);
         return;
     }
-    let least = input.items.iter().map(|entry| entry.nearest).min().unwrap_or(0);
-    let greatest = input.items.iter().map(|entry| entry.nearest).max().unwrap_or(0);
+    found.clear();
+    for entry in input.items {
+        if let Some([from, to]) = looked.within(simd, [entry.from, entry.to]) {
+            found.push(Entry { from, to, ..*entry });
+        }
+    }
+    let least = found.iter().map(|entry| entry.nearest).min().unwrap_or(0);
+    let greatest = found.iter().map(|entry| entry.nearest).max().unwrap_or(0);
     let range = greatest.wrapping_sub(least) as u32;
     let shift = (32 - range.leading_zeros()).saturating_sub(BUCKETS.ilog2());
     let bucket = |entry: &Entry| (entry.nearest.wrapping_sub(least) as u32 >> shift) as usize;
     let mut starts = [0_u32; BUCKETS + 1];
-    for entry in input.items {
+    for entry in &*found {
         starts[bucket(entry) + 1] += 1;
     }
     for k in 1..starts.len() {
         starts[k] += starts[k - 1];
     }
-    order.resize(input.items.len(), Entry::default());
-    for entry in input.items {
+    order.resize(found.len(), Entry::default());
+    for entry in found {
         let start = &mut starts[bucket(entry)];
         order[*start as usize] = *entry;
         *start += 1;
@@ -212,8 +225,7 @@ impl Work {
         self.level = level;
         match level {
             Some(level) => {
-                self.inside.find(input);
-                sort(input, &mut self.order);
+                dispatch!(level, simd => self.find(simd, input));
                 self.draw_part(level, input, input.all(), out, counts);
             }
             None => specification::draw(self, input, out, counts),
@@ -222,6 +234,13 @@ impl Work {
             counts.fragments += used as u64;
             counts.most = counts.most.max(used as u64);
         }
+    }
+
+    /// Finds where fragments are looked for, and the items there.
+    #[inline(always)]
+    fn find<S: Simd>(&mut self, simd: S, input: &Input<'_>) {
+        self.inside.find(simd, input);
+        sort(simd, input, &self.inside.looked, [&mut self.found, &mut self.order]);
     }
 
     /// The same for an area, in halves where there are too many fragments for the memory of a thread.
@@ -285,9 +304,8 @@ impl Work {
         let [low, high] = area;
         for k in 0..self.order.len() {
             let Entry { number, nearest, from, to } = self.order[k];
-            let [from, to] = [from, to].map(|place| place.map(i32::from));
-            let from = [from[0].max(low[0]), from[1].max(low[1])];
-            let to = [to[0].min(high[0]), to[1].min(high[1])];
+            let from = [i32::from(from[0]).max(low[0]), i32::from(from[1]).max(low[1])];
+            let to = [i32::from(to[0]).min(high[0]), i32::from(to[1]).min(high[1])];
             if from[0] >= to[0] || from[1] >= to[1] || (!ordered && self.is_hidden(simd, input, nearest, [from, to])) {
                 continue;
             }
@@ -307,9 +325,6 @@ impl Work {
             self.count_covers(input);
         } else {
             self.cross(simd, input);
-        }
-        for (active, looked_at) in self.active.iter_mut().zip(&self.inside.looked_at) {
-            *active &= looked_at;
         }
         self.select(simd, input, false);
     }

@@ -3,8 +3,10 @@
 //! Two triangles share an edge if they lie on both sides of it, face the same way, and agree at both its ends in all that
 //! vertices say (place, depth, colour, normal, place in the texture) and in the state they are drawn with: the surface
 //! goes on across the edge, and so do its colours. In order of submission an edge finds the last one that it can share
-//! and that no other has found, of the [`SEEK`] last between its places. What is not shared is a *border*. A triangle of one colour all over shares none: where its
-//! neighbour has that colour too there is nothing to average, and else a seam.
+//! and that no other has found, of the [`SEEK`] last between its places. What is not shared is a *border*. A triangle of one
+//! colour all over shares none: where its neighbour has that colour too there is nothing to average, and else a seam.
+//!
+//! A *surface* is what hangs together by shared edges.
 //!
 //! Inputs from: [`super::scene`]. Outputs to: [`super::inside`]. Clocks: one for each edge of a triangle that can share
 //! its edges. The same by definition: [`super::specification`].
@@ -62,12 +64,23 @@ struct Waiting {
     next: u32,
 }
 
+/// Where an edge is looked for.
+#[derive(Clone, Copy, Debug)]
+struct Key {
+    /// Of the places of both ends, whichever comes first.
+    hash: u32,
+    /// Which way it runs between them.
+    up: bool,
+}
+
 /// The edges of a scene.
 #[derive(Debug, Default)]
 pub struct Edges {
     sides: Vec<Sides>,
-    /// The first that waits of each place of the table, plus 1.
-    heads: Vec<u32>,
+    /// The first item of the surface that an item is part of; until all edges are known, one that leads to it.
+    surfaces: Vec<u32>,
+    /// The first that waits of each place of the table, plus 1: of edges that run one way, and of those that run the other.
+    heads: Vec<[u32; 2]>,
     waiting: Vec<Waiting>,
     /// Where places are hashed from: another for each table, so that nobody can know which of them meet.
     seed: Option<u64>,
@@ -85,11 +98,12 @@ impl Edges {
     /// Finds the edges that the items of a scene share, if they are asked for.
     pub fn find(&mut self, setting: &Setting, scene: &Scene, counts: &mut Counts) {
         self.sides.clear();
+        self.surfaces.clear();
         if !setting.looks_inside() {
             return;
         }
         self.heads.clear();
-        self.heads.resize((2 * scene.items.len()).next_power_of_two(), 0);
+        self.heads.resize((2 * scene.items.len()).next_power_of_two(), [0; 2]);
         self.waiting.clear();
         self.free = 0;
         let shift = 32 - self.heads.len().trailing_zeros();
@@ -98,21 +112,40 @@ impl Edges {
         for (number, item) in (0..).zip(&scene.items) {
             let sides = Sides::of(setting, item, &scene.draws[item.draw as usize]);
             self.sides.push(sides);
+            self.surfaces.push(number);
             if !sides.contains(Sides::SMOOTH) || sides.contains(Sides::NOTHING) {
                 continue;
             }
             counts.edges += 3;
-            let places = item.vertices.map(|v| mixed(u64::from(v.x as u32) << 32 | u64::from(v.y as u32), seed));
-            let hash = |from: usize, to: usize| (mixed(places[from].rotate_left(24), places[to]) >> 32) as u32;
+            let place = |v: &ScreenVertex| mixed(u64::from(v.x as u32) << 32 | u64::from(v.y as u32), seed);
+            let places = [place(&item.vertices[0]), place(&item.vertices[1]), place(&item.vertices[2])];
             for k in 0..3 {
-                // It looks for one that runs the other way.
-                let hashes = [hash(after(k), k), hash(k, after(k))];
-                waits = if self.join(scene, hashes, shift, number, k) { waits - 1 } else { waits + 1 };
+                let (from, to) = (places[k], places[after(k)]);
+                let key = Key { hash: (mixed(from.min(to).rotate_left(24), from.max(to)) >> 32) as u32, up: from < to };
+                waits = if self.join(scene, key, shift, number, k) { waits - 1 } else { waits + 1 };
             }
             most = most.max(waits);
         }
+        // Each leads to one that comes before it, or to itself.
+        for number in 0..self.surfaces.len() {
+            self.surfaces[number] = self.surfaces[self.surfaces[number] as usize];
+        }
         if !scene.items.is_empty() {
             counts.edge_bytes = most * EDGE_BYTES + scene.items.len() as u64;
+        }
+    }
+
+    /// The first item that an item leads to.
+    #[inline(always)]
+    fn first(&mut self, mut number: u32) -> u32 {
+        loop {
+            let next = self.surfaces[number as usize];
+            if next == number {
+                return number;
+            }
+            let after = self.surfaces[next as usize];
+            self.surfaces[number as usize] = after;
+            number = after;
         }
     }
 
@@ -126,35 +159,38 @@ impl Edges {
 
     /// Has an edge share another that waits, or wait; whether it shares one.
     #[inline(always)]
-    fn join(&mut self, scene: &Scene, [wanted, own]: [u32; 2], shift: u32, number: u32, k: usize) -> bool {
-        let place = |hash: u32| if shift == 32 { 0 } else { (hash >> shift) as usize };
+    fn join(&mut self, scene: &Scene, Key { hash, up }: Key, shift: u32, number: u32, k: usize) -> bool {
+        let place = if shift == 32 { 0 } else { (hash >> shift) as usize };
+        // It looks for one that runs the other way.
+        let (own, wanted) = (usize::from(up), usize::from(!up));
         let item = &scene.items[number as usize];
         // What links to the one that is looked at: 0 the head, else a place plus 1.
-        let (mut before, mut at, mut seen) = (0_u32, self.heads[place(wanted)], 0);
+        let (mut before, mut at, mut seen) = (0_u32, self.heads[place][wanted], 0);
         while at != 0 && seen < SEEK {
-            let Waiting { hash: other, edge, next } = self.waiting[at as usize - 1];
-            let (other_item, side) = ((edge / 4) as usize, (edge % 4) as usize);
-            if other == wanted && lie_together(item, k, &scene.items[other_item], side) {
+            let Waiting { hash: found, edge, next } = self.waiting[at as usize - 1];
+            let (other, side) = ((edge / 4) as usize, (edge % 4) as usize);
+            if found == hash && lie_together(item, k, &scene.items[other], side) {
                 seen += 1;
-                let other = other_item;
-                let facing = Sides::SMOOTH | Sides::BACK;
-                let alike = self.sides[other] & facing == self.sides[number as usize] & facing;
+                // What waits can share its edges, and so can this.
+                let alike = (self.sides[other] ^ self.sides[number as usize]) & Sides::BACK == Sides::empty();
                 if alike && share(scene, item, k, &scene.items[other], side) {
                     match before {
-                        0 => self.heads[place(wanted)] = next,
+                        0 => self.heads[place][wanted] = next,
                         before => self.waiting[before as usize - 1].next = next,
                     }
                     self.waiting[at as usize - 1].next = self.free;
                     self.free = at;
                     self.sides[other] |= Sides::from_bits_retain(1 << side);
                     self.sides[number as usize] |= Sides::from_bits_retain(1 << k);
+                    let (a, b) = (self.first(number), self.first(other as u32));
+                    self.surfaces[a.max(b) as usize] = a.min(b);
                     return true;
                 }
             }
             (before, at) = (at, next);
         }
-        let link = &mut self.heads[place(own)];
-        let new = Waiting { hash: own, edge: number * 4 + k as u32, next: *link };
+        let link = &mut self.heads[place][own];
+        let new = Waiting { hash, edge: number * 4 + k as u32, next: *link };
         match self.free {
             0 => {
                 self.waiting.push(new);
@@ -166,6 +202,12 @@ impl Edges {
             }
         }
         false
+    }
+
+    /// The first item of the surface that each item is part of: one with all that it shares edges with.
+    #[must_use]
+    pub fn surfaces(&self) -> &[u32] {
+        &self.surfaces
     }
 
     /// What is known of the edges of each item; empty if nothing is.
@@ -212,19 +254,16 @@ fn lie_together(a: &Item, j: usize, b: &Item, k: usize) -> bool {
     together(&a.vertices[j], &b.vertices[after(k)]) && together(&a.vertices[after(j)], &b.vertices[k])
 }
 
-/// Whether edge `j` of one triangle and edge `k` of another that faces the same way can be shared.
+/// Whether edge `j` of one triangle and edge `k` of another, which lie together and face the same way, can be shared.
 #[inline(always)]
 pub(super) fn share(scene: &Scene, a: &Item, j: usize, b: &Item, k: usize) -> bool {
     let ends = [(j, after(k)), (after(j), k)];
-    let corner = |&(j, k): &(usize, usize)| {
+    let corner = |(j, k): (usize, usize)| {
         let (v, w) = (&a.vertices[j], &b.vertices[k]);
-        v.x == w.x && v.y == w.y && v.z == w.z && v.reciprocal_w == w.reciprocal_w
+        v.z == w.z && v.reciprocal_w == w.reciprocal_w
     };
-    if !ends.iter().all(corner) {
-        return false;
-    }
     let flat = scene.draws[a.draw as usize].interpolation == Interpolation::Flat;
-    let colours = |&(j, k): &(usize, usize)| a.vertices[j].colour == b.vertices[k].colour;
-    let coloured = if flat { colours(&(0, 0)) } else { ends.iter().all(colours) };
-    coloured && scene.goes_on(a, b, ends)
+    let colours = |(j, k): (usize, usize)| a.vertices[j].colour == b.vertices[k].colour;
+    let coloured = if flat { colours((0, 0)) } else { colours(ends[0]) && colours(ends[1]) };
+    corner(ends[0]) && corner(ends[1]) && coloured && scene.goes_on(a, b, ends)
 }

@@ -156,7 +156,7 @@ impl Work {
             let x = chunk * LANES;
             let inside = bits_of(0, left.saturating_sub(x), (right - x).min(LANES)) as u32;
             for line in (first - input.top) as usize..(beyond - input.top) as usize {
-                let wanted = inside & self.looks_at(input, line, chunk);
+                let wanted = inside & self.inside.looked.on(line, chunk);
                 if wanted == 0 {
                     continue;
                 }
@@ -192,7 +192,8 @@ impl Work {
                 let second = i32x16::from_slice(simd, &self.depths[at].second);
                 let far = i32x16::from_slice(simd, &self.depths[at].far);
                 let crossed = second.simd_le(far).to_bitmask();
-                self.active[line * words + chunk / 4] |= crossed << (chunk % 4 * LANES);
+                let crossed = crossed as u32 & self.inside.looked.on(line, chunk);
+                self.active[line * words + chunk / 4] |= u64::from(crossed) << (chunk % 4 * LANES);
             }
         }
     }

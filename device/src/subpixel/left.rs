@@ -38,10 +38,8 @@ pub(super) fn keep(work: &Work, input: &Input<'_>, list: &mut Vec<Fragment>, [x,
         let limit = cover.limit(work, input, list, base);
         let left = list.len() + usize::from(base <= limit);
         let place = [x as i32, input.top + line as i32];
-        if left < 2
-            || (limit < base && is_plain(work, input, list, limit, place))
-            || (limit < base && cover.is_inside(work, input, list, place))
-        {
+        let is_one = || is_plain(work, input, list, limit, place) || cover.is_inside(work, input, list, place);
+        if left < 2 || (limit < base && is_one()) {
             return None;
         }
     }
@@ -121,9 +119,7 @@ impl Cover {
         *self = Cover::new(work, list);
         limit
     }
-}
 
-impl Cover {
     /// Whether what is left lies inside a surface.
     #[inline(always)]
     fn is_inside(&self, work: &Work, input: &Input<'_>, list: &[Fragment], place: [i32; 2]) -> bool {

@@ -19,6 +19,9 @@
 //! | [`scene`] | what is drawn, taken while the path draws it |
 //! | [`edges`] | edges that two triangles of one surface share |
 //! | `inside` | pixels inside a surface, in which no fragment is looked for |
+//! | `sheet` | triangles of a tile: how often each side of them covers its pixels, and which is nearer |
+//! | `slant` | their depths, near enough |
+//! | `looked` | the pixels of a band in which fragments are looked for |
 //! | [`piece`] | an item set up for a band of lines: edges, depth bounds, depths at samples |
 //! | `bands` | items sorted into bands of lines |
 //! | [`band`] | a band from items to resolved pixels, from the nearest item to the farthest |
@@ -47,10 +50,10 @@
 //! | [`map`] | an instrument: which pixels were taken up, and why |
 //!
 //! # Clocks
-//! 1 an edge that looks for another to share, 1 a mask (one for each fragment of an active pixel that covers a part of it, or its centre alone, and one for each
-//! triangle, in which its edges begin), 1 a band of samples searched, 1 a depth evaluated, 1 a merge, 1 a fragment packed,
-//! 1 an active pixel averaged and written; a colour is 1 clock of the shading unit. Lists are written while masks are
-//! made.
+//! 1 an edge that looks for another to share, 1 a mask (one for each fragment of an active pixel that covers a part of it,
+//! or its centre alone, and one for each triangle, in which its edges begin), 1 a band of samples searched, 1 a depth
+//! evaluated, 1 a merge, 1 a fragment packed, 1 an active pixel averaged and written; a colour is 1 clock of the shading
+//! unit. Lists are written while masks are made.
 //!
 //! # Memory
 //! The lists of one line of pixels lie in a pool of SUBPIXEL_POOL fragments of [`FRAGMENT_BYTES`] bytes. Pixels get
@@ -72,6 +75,7 @@ mod inside;
 mod layers;
 mod left;
 mod lists;
+mod looked;
 pub mod map;
 mod parts;
 pub mod piece;
@@ -84,6 +88,8 @@ pub mod search;
 pub mod search_clocked;
 mod shader;
 mod shares;
+mod sheet;
+mod slant;
 pub mod specification;
 #[cfg(test)]
 mod tests;

@@ -196,7 +196,7 @@ impl Work {
                     continue;
                 }
                 let x = (chunk * LANES) as i32;
-                let wanted = self.looks_at(input, line, chunk);
+                let wanted = self.inside.looked.on(line, chunk);
                 if wanted == 0 {
                     continue;
                 }

@@ -59,7 +59,8 @@ impl Unit {
         // The edges of a triangle with masks begin in one of them.
         total.masks = self.bands.masked();
         for first in (0..self.bands.count()).step_by(group) {
-            let (bands, edges, works) = (&self.bands, self.edges.sides(), &self.works);
+            let (bands, works) = (&self.bands, &self.works);
+            let (edges, surfaces) = (self.edges.sides(), self.edges.surfaces());
             let draw = |(band, out): (usize, &mut Vec<Resolved>)| {
                 out.clear();
                 let mut counts = Counts::default();
@@ -71,7 +72,7 @@ impl Unit {
                 let mut work = mine.lock().unwrap_or_else(PoisonError::into_inner);
                 let top = band * LINES;
                 let lines = LINES.min(height - top);
-                let input = Input { setting, scene, items: bands.items(band), edges, top: top as i32, lines };
+                let input = Input { setting, scene, items: bands.items(band), edges, surfaces, top: top as i32, lines };
                 work.draw(level, &input, out, &mut counts);
                 counts
             };

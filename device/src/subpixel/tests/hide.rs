@@ -35,7 +35,15 @@ fn drawn(triangles: &[([(i32, i32); 3], u32)]) -> (Work, usize) {
     }
     let mut bands = Bands::default();
     bands.fill(&scene, setting.rule, AREA.bottom);
-    let input = Input { setting: &setting, scene: &scene, items: bands.items(0), edges: &[], top: 0, lines: LINES };
+    let input = Input {
+        setting: &setting,
+        scene: &scene,
+        items: bands.items(0),
+        edges: &[],
+        surfaces: &[],
+        top: 0,
+        lines: LINES,
+    };
     let (mut work, mut out, mut counts) = (Work::default(), Vec::new(), Counts::default());
     work.draw(Some(Level::new()), &input, &mut out, &mut counts);
     (work, out.len())

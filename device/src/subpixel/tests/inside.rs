@@ -198,11 +198,11 @@ fn looked_at(scene: &Scene) -> (u32, usize) {
     let (mut bands, mut edges, mut counts) = (Bands::default(), Edges::default(), Counts::default());
     bands.fill(scene, setting.rule, AREA.bottom);
     edges.find(&setting, scene, &mut counts);
-    let edges = edges.sides();
-    let input = Input { setting: &setting, scene, items: bands.items(0), edges, top: 0, lines: LINES };
+    let (edges, surfaces) = (edges.sides(), edges.surfaces());
+    let input = Input { setting: &setting, scene, items: bands.items(0), edges, surfaces, top: 0, lines: LINES };
     let (mut work, mut out) = (Work::default(), Vec::new());
     work.draw(Some(Level::new()), &input, &mut out, &mut counts);
-    (work.inside.looked_at.iter().map(|word| word.count_ones()).sum(), out.len())
+    (work.inside.looked.count(), out.len())
 }
 
 #[test]
@@ -214,8 +214,34 @@ fn inside_of_a_surface_is_not_looked_at_whatever_lies_behind() {
     // The outline is no more than what it is without: that of the sheet behind is hidden but for its end.
     assert!(looked < 4 * active as u32, "{looked} looked at, {active} active");
     assert!(with < looked + 4 * (active_with - active + 16) as u32, "{with} looked at, {looked} without");
-    let (all, _) = looked_at(&scene(&[Mesh { odd: vec![4; 72], ..smooth() }], Some(DepthTest::LESS), false));
-    assert_eq!(all, 128 * LINES as u32, "no edge is shared");
+    // Every other triangle is turned round.
+    let odd = (0..72).map(|n| if n % 2 == 0 { 0 } else { 2 }).collect();
+    let (all, _) = looked_at(&scene(&[Mesh { odd, ..smooth() }], Some(DepthTest::LESS), false));
+    assert_eq!(all, LINES as u32 * 80, "no edge is shared");
+}
+
+#[test]
+fn inside_of_a_fold_is_not_looked_at() {
+    // A sheet that is folded over down its middle: what faces away lies behind what faces the viewer, and both meet in the
+    // tiles of the fold.
+    let mut fold = Mesh { origin: [700, 300], depth: [900, 1500, 400], ..smooth() };
+    for (n, (off, ..)) in fold.vertices.iter_mut().enumerate() {
+        let beyond = (n % SIDE) as i32 - 3;
+        *off = if beyond > 0 { [-beyond * 2 * fold.across[0] + 1000, 0] } else { [0; 2] };
+    }
+    let (looked, active) = looked_at(&scene(&[fold], Some(DepthTest::LESS), false));
+    assert!(active > 0, "its outline");
+    assert!(looked < 3 * active as u32, "{looked} looked at, {active} active");
+}
+
+#[test]
+fn inside_of_the_nearer_of_two_surfaces_is_not_looked_at_though_their_depths_overlap() {
+    // Both lean by more in a tile than they are apart.
+    let near = Mesh { origin: [700, -600], depth: [900, 9000, 400], ..smooth() };
+    let far = Mesh { depth: [2900, 9000, 400], ..near.clone() };
+    let (alone, _) = looked_at(&scene(&[near.clone()], Some(DepthTest::LESS), false));
+    let (both, active) = looked_at(&scene(&[near, far], Some(DepthTest::LESS), false));
+    assert!(both <= 2 * alone, "{both} looked at, {alone} with one of them, {active} active");
 }
 
 #[test]

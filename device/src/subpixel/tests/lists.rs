@@ -14,7 +14,15 @@ const FULL: u64 = Grid::G4X4.full();
 fn lists(pool: u32) -> Lists {
     let setting = Setting { pool, ..setting(Grid::G4X4, [32, 1]) };
     let mut lists = Lists::default();
-    lists.begin(&Input { setting: &setting, scene: &Scene::default(), items: &[], edges: &[], top: 0, lines: 1 });
+    lists.begin(&Input {
+        setting: &setting,
+        scene: &Scene::default(),
+        items: &[],
+        edges: &[],
+        surfaces: &[],
+        top: 0,
+        lines: 1,
+    });
     lists
 }
 

@@ -48,7 +48,7 @@ proptest! {
         let taken = scene.draw(&state, test, Interpolation::Flat, AlphaRule::Vertices).expect("taken");
         let item = Item { vertices, draw: taken.draw, number: 0, kind: Kind::Masked };
         taken.items.push(item);
-        let input = Input { setting: &setting, scene: &scene, items: &[], edges: &[], top: 0, lines: 16 };
+        let input = Input { setting: &setting, scene: &scene, items: &[], edges: &[], surfaces: &[], top: 0, lines: 16 };
         let (piece, _) = Piece::new(&setting, 0, &item, &scene.draws[item.draw as usize], 0);
         for x in (0..64).step_by(LANES) {
             let expected: Vec<[i32; 2]> = (x..x + LANES as i32).map(|x| piece.bounds(x, y)).collect();
