@@ -303,7 +303,7 @@ impl Work {
         let ordered = input.setting.rule == Rule::InOrder;
         let [low, high] = area;
         for k in 0..self.order.len() {
-            let Entry { number, nearest, from, to } = self.order[k];
+            let Entry { number, nearest, from, to, .. } = self.order[k];
             let from = [i32::from(from[0]).max(low[0]), i32::from(from[1]).max(low[1])];
             let to = [i32::from(to[0]).min(high[0]), i32::from(to[1]).min(high[1])];
             if from[0] >= to[0] || from[1] >= to[1] || (!ordered && self.is_hidden(simd, input, nearest, [from, to])) {

@@ -14,6 +14,8 @@ pub struct Entry {
     pub number: u32,
     /// No depth of it is nearer; where the last is seen the later stands for the nearer.
     pub nearest: i32,
+    /// None is farther.
+    pub farthest: i32,
     /// First column and row of the target that it can touch, pixels.
     pub from: [u16; 2],
     /// First beyond.
@@ -45,9 +47,9 @@ impl Bands {
                 continue;
             }
             self.masked += u64::from(item.kind == Kind::Masked);
-            let nearest = if rule == Rule::Last { -(number as i32) } else { nearest(item) };
-            let [from, to] = [from, to].map(|place| place.map(|c| c as u16));
-            let entry = Entry { number, nearest, from, to };
+            let [nearest, farthest] = if rule == Rule::Last { [-(number as i32); 2] } else { range(item) };
+            let (from, to) = ([from[0] as u16, from[1] as u16], [to[0] as u16, to[1] as u16]);
+            let entry = Entry { number, nearest, farthest, from, to };
             bands(&entry).for_each(|band| self.starts[band + 1] += 1);
             self.all.push(entry);
         }
@@ -90,9 +92,9 @@ fn bands(entry: &Entry) -> std::ops::Range<usize> {
     usize::from(entry.from[1]) / LINES..(usize::from(entry.to[1]) - 1) / LINES + 1
 }
 
-/// The nearest depth of an item's vertices.
+/// The nearest and the farthest depth of an item's vertices.
 #[inline(always)]
-fn nearest(item: &Item) -> i32 {
+fn range(item: &Item) -> [i32; 2] {
     let [a, b, c] = &item.vertices;
-    a.z.min(b.z).min(c.z) as i32
+    [a.z.min(b.z).min(c.z) as i32, a.z.max(b.z).max(c.z) as i32]
 }

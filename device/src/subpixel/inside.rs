@@ -154,13 +154,11 @@ impl Inside {
             if sides.contains(Sides::NOTHING) {
                 continue;
             }
-            let item = &input.scene.items[entry.number as usize];
-            let far = farthest(input, entry, item);
-            if !sides.contains(Sides::SMOOTH) || far >= base {
+            if !sides.contains(Sides::SMOOTH) || entry.farthest >= base {
                 self.looked.add_all(input, entry);
             }
             if sides.contains(Sides::SMOOTH) {
-                self.visit(input, place, entry, item, sides, far);
+                self.visit(input, place, entry, sides);
             }
         }
         for chunk in 0..input.chunks() {
@@ -172,16 +170,18 @@ impl Inside {
 
     /// Adds a triangle to the tiles that it can touch.
     #[inline(always)]
-    fn visit(&mut self, input: &Input<'_>, place: u32, entry: &Entry, item: &Item, sides: Sides, far: i32) {
+    fn visit(&mut self, input: &Input<'_>, place: u32, entry: &Entry, sides: Sides) {
         debug_assert!(input.items.len() < u32::MAX as usize);
-        let Entry { nearest, from, to, .. } = entry;
+        let Entry { nearest, farthest, from, to, .. } = *entry;
+        let item = &input.scene.items[entry.number as usize];
         // Without depths all is one sheet.
         let last = input.setting.rule == Rule::Last;
         let large = !last && (to[0] - from[0]).max(to[1] - from[1]) > LARGE;
         let slant = large.then(|| Slant::new(input, entry, item));
         let (back, borders) = (sides.contains(Sides::BACK), !sides.contains(Sides::INNER));
         for chunk in usize::from(from[0]) / LANES..(usize::from(to[0]) - 1) / LANES + 1 {
-            let depths = slant.as_ref().map_or(if last { [0; 2] } else { [*nearest, far] }, |slant| slant.over(chunk));
+            let depths =
+                slant.as_ref().map_or(if last { [0; 2] } else { [nearest, farthest] }, |slant| slant.over(chunk));
             let tile = &mut self.tiles[chunk];
             let column = chunk * LANES;
             let covers = usize::from(from[0]) <= column
@@ -285,13 +285,6 @@ fn is_worth_it(input: &Input<'_>) -> bool {
         tiles += usize::from(entry.to[0] - entry.from[0]) / LANES + 2;
     }
     8 * shared > input.items.len() && tiles <= VISITS
-}
-
-/// No depth of an item is farther, as [`Entry::nearest`] has it.
-#[inline(always)]
-fn farthest(input: &Input<'_>, entry: &Entry, item: &Item) -> i32 {
-    let [a, b, c] = &item.vertices;
-    if input.setting.rule == Rule::Last { entry.nearest } else { a.z.max(b.z).max(c.z) as i32 }
 }
 
 impl Setting {

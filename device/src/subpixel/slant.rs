@@ -35,7 +35,7 @@ impl Slant {
     #[inline(always)]
     pub(super) fn new(input: &Input<'_>, entry: &Entry, item: &Item) -> Slant {
         let [a, b, c] = &item.vertices;
-        let limits = [entry.nearest, a.z.max(b.z).max(c.z) as i32];
+        let limits = [entry.nearest, entry.farthest];
         let place = |v: &ScreenVertex| [f64::from(v.x), f64::from(v.y), f64::from(v.z)];
         let (a, b, c) = (place(a), place(b), place(c));
         let (b, c) = ([b[0] - a[0], b[1] - a[1], b[2] - a[2]], [c[0] - a[0], c[1] - a[1], c[2] - a[2]]);
