@@ -50,10 +50,15 @@ fn mesh() -> impl Strategy<Value = Mesh> {
         let vertex = (vector(noise), 0_u32..800, 0_u32..0x0100_0000);
         (vector(step), vector(step), prop::collection::vec(vertex, SIDE * SIDE))
     });
-    let odd = prop::collection::vec(prop_oneof![12 => Just(0_u8), 1 => 1_u8..5], 2 * SIDE * SIDE);
+    let any = prop::collection::vec(prop_oneof![12 => Just(0_u8), 1 => 1_u8..5], 2 * SIDE * SIDE);
+    let odd = prop_oneof![2 => any, 1 => Just(vec![0; 2 * SIDE * SIDE])];
     let place = [-4000..24_000_i32, -4000..14_000_i32];
-    (place, shape, [500..60_000_i32, -3000..3000_i32, -3000..3000_i32], odd)
-        .prop_map(|(origin, (across, down, vertices), depth, odd)| Mesh { origin, across, down, vertices, depth, odd })
+    // Some lie among one another.
+    let depth = (prop_oneof![500..60_000_i32, 20_000..26_000_i32], -3000..3000_i32, -3000..3000_i32);
+    (place, shape, depth, odd).prop_map(|(origin, (across, down, vertices), (first, right, below), odd)| {
+        let depth = [first, right, below];
+        Mesh { origin, across, down, vertices, depth, odd }
+    })
 }
 
 impl Mesh {
@@ -267,5 +272,24 @@ fn an_edge_looks_at_so_many_between_its_places() {
         expected.specify(&setting, &scene, &mut Counts::default());
         assert_eq!(found.sides(), expected.sides());
         assert_eq!(found.sides()[0].shares(1), shares, "{others} between");
+    }
+}
+
+#[test]
+fn surfaces_that_cross_are_anti_aliased_where_no_border_is_near() {
+    // Both are larger than the target.
+    let one =
+        Mesh { origin: [-6000, -4000], across: [8000, 130], down: [-90, 4000], depth: [2000, 6000, 0], ..smooth() };
+    let alike = Mesh { depth: [26_000, -5000, 300], ..one.clone() };
+    let turned = Mesh { origin: [34_000, -4000], across: [-8000, 130], depth: [2000, 5000, 300], ..one.clone() };
+    for other in [alike, turned] {
+        let scene = scene(&[one.clone(), other], Some(DepthTest::LESS), false);
+        let setting = setting_of(Grid::G8X8, SubpixelDepth::Search, Rule::Nearest, 24);
+        let expected = resolved(&setting, &scene, None);
+        assert!(expected.0.len() > AREA.bottom as usize / 2, "a pixel on most lines: {}", expected.0.len());
+        assert!(expected.0.len() < 400, "no more than that line: {}", expected.0.len());
+        for level in levels().into_iter().chain([Level::new()]) {
+            assert_eq!(resolved(&setting, &scene, Some(level)), expected, "{level:?}");
+        }
     }
 }

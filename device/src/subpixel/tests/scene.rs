@@ -1,12 +1,16 @@
 //! What a scene takes, and by which rule its opaque fragments are ordered.
 
 use super::super::scene::{Base, ITEM_LIMIT, Item, Kind, Rule, Scene};
-use crate::geometry::ScreenVertex;
+use crate::geometry::transform::Transform;
+use crate::geometry::{GeometryRegisters, ScreenVertex};
 use crate::hidden::z_buffer::DepthTest;
-use crate::shading::pixel::AlphaRule;
+use crate::hidden::z_buffer::band::DrawShading;
+use crate::shading::parameters::{ParameterTransform, VertexParameters};
+use crate::shading::pixel::{AlphaRule, PixelShading};
 use crate::shading::plane::Interpolation;
+use std::sync::Arc;
 use zga_abi::Effects;
-use zga_abi::format::{BlendMode, DepthFunction};
+use zga_abi::format::{BlendMode, DepthFormat, DepthFunction, Topology};
 use zga_firmware::checked::{Clear, DrawState, Rectangle};
 
 const AREA: Rectangle = Rectangle { x: 0, y: 0, right: 8, bottom: 8 };
@@ -103,4 +107,53 @@ fn clear_beyond_the_limit_overflows_and_keeps_what_is_there() {
     scene.clear(&part, false, false);
     assert!(scene.overflowed && scene.full());
     assert_eq!(scene.items.len(), ITEM_LIMIT);
+}
+
+/// What the colours of so many primitives go through, each of which carries its number.
+fn shading(count: u32) -> Arc<DrawShading> {
+    let identity: [f32; 16] = std::array::from_fn(|k| if k % 5 == 0 { 1.0 } else { 0.0 });
+    let registers = GeometryRegisters {
+        object_eye: identity,
+        decal: identity,
+        eye_clip: identity,
+        viewport: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+    };
+    let transform = ParameterTransform {
+        screen: Transform::new(&registers, Effects::empty(), [8, 8], DepthFormat::default(), 8),
+        eye: [[0.0; 4]; 4],
+        normal: [[0.0; 3]; 3],
+        perspective: false,
+        topology: Topology::Triangles,
+    };
+    let pixel = Arc::new(PixelShading { transform, light: None, texture: None, fog: None });
+    let carries = |n: u32| [VertexParameters { coordinates: [n as f32; 2], ..VertexParameters::default() }; 3];
+    // The batch begins with the 100th of its draw.
+    Arc::new(DrawShading { pixel, first: 100, vertices: (100..100 + count).map(carries).collect() })
+}
+
+#[test]
+fn shade_gives_each_item_what_it_carries_and_holds_no_more_than_twice_that() {
+    for taken in [vec![100, 101, 105], vec![107], (100..108).collect(), vec![]] {
+        let mut scene = Scene::default();
+        // One of another draw in the same state, without shading.
+        draw(&mut scene, Effects::ANTI_ALIAS, None, 255);
+        let before = scene.items.len();
+        for &number in &taken {
+            draw(&mut scene, Effects::ANTI_ALIAS, None, 255);
+            scene.items.last_mut().expect("taken").number = number;
+        }
+        let shading = shading(8);
+        scene.shade(before, &shading);
+        let shade = |item: &Item| scene.draws[item.draw as usize].shade(item.number);
+        assert!(shade(&scene.items[0]).pixel.is_none());
+        for (item, number) in scene.items[before..].iter().zip(&taken) {
+            let (pixel, carried) = shade(item).pixel.expect("shaded");
+            assert!(Arc::ptr_eq(pixel, &shading.pixel));
+            assert_eq!(carried[2].coordinates[0], *number as f32);
+        }
+        let held: usize = scene.draws.iter().filter_map(|draw| Some(draw.shading.as_ref()?.vertices.len())).sum();
+        assert!(held <= 2 * taken.len(), "{held} held for {}", taken.len());
+        drop(shading);
+        assert_eq!(scene.take_parameters().is_some(), !taken.is_empty());
+    }
 }
