@@ -22,7 +22,7 @@ use zga_abi::Effects;
 use zga_abi::format::{BlendMode, DepthFunction};
 use zga_firmware::checked::{Clear, DrawState, Rectangle, StencilTest};
 
-/// Most primitives and clears of a scene: 68 MiB, and less for the draws.
+/// Most primitives and clears of a scene: 72 MiB, less for the draws, and at most 192 MiB for what their vertices carry.
 pub const ITEM_LIMIT: usize = 1 << 20;
 
 /// What an item covers.

@@ -244,7 +244,7 @@ fn inside_of_the_nearer_of_two_surfaces_is_not_looked_at_though_their_depths_ove
     // Both lean by more in a tile than they are apart.
     let near = Mesh { origin: [700, -600], depth: [900, 9000, 400], ..smooth() };
     let far = Mesh { depth: [2900, 9000, 400], ..near.clone() };
-    let (alone, _) = looked_at(&scene(&[near.clone()], Some(DepthTest::LESS), false));
+    let (alone, _) = looked_at(&scene(std::slice::from_ref(&near), Some(DepthTest::LESS), false));
     let (both, active) = looked_at(&scene(&[near, far], Some(DepthTest::LESS), false));
     assert!(both <= 2 * alone, "{both} looked at, {alone} with one of them, {active} active");
 }
