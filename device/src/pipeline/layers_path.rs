@@ -85,7 +85,7 @@ impl Pipeline {
                 None => Ok(()),
             },
         };
-        self.scene.begin();
+        self.close_scene();
         composed
     }
 

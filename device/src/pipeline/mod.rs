@@ -190,6 +190,14 @@ impl Pipeline {
         resolved
     }
 
+    /// Forgets what a scene took, and keeps the memory of its parameters for the next draw.
+    fn close_scene(&mut self) {
+        if let Some(vertices) = self.scene.take_parameters() {
+            self.parameters = vertices;
+        }
+        self.scene.begin();
+    }
+
     /// Gives scratch memory and threads back. Which blocks are logically cleared is no scratch: it stays.
     pub fn power_off(&mut self, memory: &mut VideoMemory) {
         self.power_texture_off(memory);

@@ -112,10 +112,7 @@ impl Pipeline {
             charge(&counts, account);
             resolved = stopped;
         }
-        if let Some(vertices) = self.scene.take_parameters() {
-            self.parameters = vertices;
-        }
-        self.scene.begin();
+        self.close_scene();
         self.map = map.or(self.map.take());
         resolved
     }

@@ -180,7 +180,7 @@ impl Resolved {
     }
 }
 
-/// Buckets that items are sorted into by their depth: few, so that surfaces stay together in memory.
+/// Buckets that items are sorted into by their depth: few, so that neighbours stay together in memory.
 const BUCKETS: usize = 128;
 
 /// Puts the items of a band that may be where fragments are looked for in order, from the nearest to the farthest, so well
