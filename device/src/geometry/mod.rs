@@ -45,6 +45,16 @@ pub struct GeometryRegisters {
     pub viewport: [f32; 6],
 }
 
+#[cfg(test)]
+const ONE: [f32; 16] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+
+#[cfg(test)]
+impl GeometryRegisters {
+    /// Registers that change nothing.
+    pub(crate) const IDENTITY: GeometryRegisters =
+        GeometryRegisters { object_eye: ONE, decal: ONE, eye_clip: ONE, viewport: [1., 1., 1., 0., 0., 0.] };
+}
+
 /// A vertex on the sub-pixel grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ScreenVertex {

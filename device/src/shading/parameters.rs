@@ -345,13 +345,10 @@ mod tests {
     use zga_abi::Effects;
     use zga_abi::format::DepthFormat;
 
-    const IDENTITY: [f32; 16] = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
-
     /// To the screen with w = z, so that a vertex at (x z, y z, z) is seen at (x, y).
     fn transform(topology: Topology) -> ParameterTransform {
         let eye_clip = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 0.5, 1., 0., 0., 0., 0.];
-        let registers =
-            GeometryRegisters { object_eye: IDENTITY, decal: IDENTITY, eye_clip, viewport: [1., 1., 1., 0., 0., 0.] };
+        let registers = GeometryRegisters { eye_clip, ..GeometryRegisters::IDENTITY };
         ParameterTransform {
             screen: Transform::new(&registers, Effects::PERSPECTIVE, [64, 64], DepthFormat::default(), 8),
             eye: [[1., 0., 0., 0.], [0., 1., 0., 0.], [0., 0., 1., 0.], [0., 0., 0., 1.]],

@@ -252,8 +252,8 @@ impl Inside {
     #[inline(always)]
     fn limits(&self, place: usize, last: bool) -> Limits {
         let own = self.sheets[place].depths;
-        let (before, after) = (&self.sheets[..place], &self.sheets[place + 1..]);
-        let others = before.iter().chain(after).fold(NONE, |all, other| both(all, other.depths));
+        let (first, rest) = (&self.sheets[..place], &self.sheets[place + 1..]);
+        let others = first.iter().chain(rest).fold(NONE, |all, other| both(all, other.depths));
         if last || own[1] < others[0] || others[1] < own[0] {
             return Limits { asked: NONE, bounds: own };
         }

@@ -197,8 +197,12 @@ fn smooth() -> Mesh {
     }
 }
 
+/// Pixels more than active ones that may be looked at in a band: borders are taken for a little wider, which adds one on a
+/// line at most.
+const MORE: u32 = LINES as u32;
+
 /// Pixels of the first band in which fragments are looked for, and those that are active on it.
-fn looked_at(scene: &Scene) -> (u32, usize) {
+fn looked_at(scene: &Scene) -> (u32, u32) {
     let setting = setting_of(Grid::G8X8, SubpixelDepth::Search, Rule::Nearest, 24);
     let (mut bands, mut edges, mut counts) = (Bands::default(), Edges::default(), Counts::default());
     bands.fill(scene, setting.rule, AREA.bottom);
@@ -207,7 +211,7 @@ fn looked_at(scene: &Scene) -> (u32, usize) {
     let input = Input { setting: &setting, scene, items: bands.items(0), edges, surfaces, top: 0, lines: LINES };
     let (mut work, mut out) = (Work::default(), Vec::new());
     work.draw(Some(Level::new()), &input, &mut out, &mut counts);
-    (work.inside.looked.count(), out.len())
+    (work.inside.looked.count(), out.len() as u32)
 }
 
 #[test]
@@ -216,9 +220,9 @@ fn inside_of_a_surface_is_not_looked_at_whatever_lies_behind() {
     assert!(active > 0, "its outline");
     let behind = Mesh { origin: [2000, 1500], depth: [40_000, 300, 200], ..smooth() };
     let (with, active_with) = looked_at(&scene(&[smooth(), behind.clone()], Some(DepthTest::LESS), false));
-    // The outline is no more than what it is without: that of the sheet behind is hidden but for its end.
-    assert!(looked < 4 * active as u32, "{looked} looked at, {active} active");
-    assert!(with < looked + 4 * (active_with - active + 16) as u32, "{with} looked at, {looked} without");
+    assert!(looked <= active + MORE, "{looked} looked at, {active} active");
+    // The outline of the sheet behind is hidden but for its end.
+    assert!(with <= active_with + MORE, "{with} looked at, {active_with} active");
     // Every other triangle is turned round.
     let odd = (0..72).map(|n| if n % 2 == 0 { 0 } else { 2 }).collect();
     let (all, _) = looked_at(&scene(&[Mesh { odd, ..smooth() }], Some(DepthTest::LESS), false));
@@ -236,7 +240,7 @@ fn inside_of_a_fold_is_not_looked_at() {
     }
     let (looked, active) = looked_at(&scene(&[fold], Some(DepthTest::LESS), false));
     assert!(active > 0, "its outline");
-    assert!(looked < 3 * active as u32, "{looked} looked at, {active} active");
+    assert!(looked <= active + MORE, "{looked} looked at, {active} active");
 }
 
 #[test]
@@ -245,8 +249,8 @@ fn inside_of_the_nearer_of_two_surfaces_is_not_looked_at_though_their_depths_ove
     let near = Mesh { origin: [700, -600], depth: [900, 9000, 400], ..smooth() };
     let far = Mesh { depth: [2900, 9000, 400], ..near.clone() };
     let (alone, _) = looked_at(&scene(std::slice::from_ref(&near), Some(DepthTest::LESS), false));
-    let (both, active) = looked_at(&scene(&[near, far], Some(DepthTest::LESS), false));
-    assert!(both <= 2 * alone, "{both} looked at, {alone} with one of them, {active} active");
+    let (both, _) = looked_at(&scene(&[near, far], Some(DepthTest::LESS), false));
+    assert!(both <= alone + MORE, "{both} looked at, {alone} with one of them");
 }
 
 #[test]
@@ -287,7 +291,8 @@ fn surfaces_that_cross_are_anti_aliased_where_no_border_is_near() {
         let setting = setting_of(Grid::G8X8, SubpixelDepth::Search, Rule::Nearest, 24);
         let expected = resolved(&setting, &scene, None);
         assert!(expected.0.len() > AREA.bottom as usize / 2, "a pixel on most lines: {}", expected.0.len());
-        assert!(expected.0.len() < 400, "no more than that line: {}", expected.0.len());
+        // The line in which they cross is steep: it passes through two pixels of a line at most.
+        assert!(expected.0.len() <= 2 * AREA.bottom as usize, "no more than that line: {}", expected.0.len());
         for level in levels().into_iter().chain([Level::new()]) {
             assert_eq!(resolved(&setting, &scene, Some(level)), expected, "{level:?}");
         }

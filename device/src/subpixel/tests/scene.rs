@@ -111,15 +111,8 @@ fn clear_beyond_the_limit_overflows_and_keeps_what_is_there() {
 
 /// What the colours of so many primitives go through, each of which carries its number.
 fn shading(count: u32) -> Arc<DrawShading> {
-    let identity: [f32; 16] = std::array::from_fn(|k| if k % 5 == 0 { 1.0 } else { 0.0 });
-    let registers = GeometryRegisters {
-        object_eye: identity,
-        decal: identity,
-        eye_clip: identity,
-        viewport: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
-    };
     let transform = ParameterTransform {
-        screen: Transform::new(&registers, Effects::empty(), [8, 8], DepthFormat::default(), 8),
+        screen: Transform::new(&GeometryRegisters::IDENTITY, Effects::empty(), [8, 8], DepthFormat::default(), 8),
         eye: [[0.0; 4]; 4],
         normal: [[0.0; 3]; 3],
         perspective: false,

@@ -129,13 +129,6 @@ fn punched(shapes: &[Shape], seed: u64, frame: &Frame) -> Arc<DrawShading> {
     let size = [16, 8];
     let texels = noise(size[0] as usize * size[1] as usize, seed);
     let texture = Texture::decode(&texels, &plain(size));
-    let identity: [f32; 16] = std::array::from_fn(|k| if k % 5 == 0 { 1.0 } else { 0.0 });
-    let registers = GeometryRegisters {
-        object_eye: identity,
-        decal: identity,
-        eye_clip: identity,
-        viewport: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
-    };
     let topology = match shapes.first() {
         Some(Shape::Line(..)) => Topology::Lines,
         Some(Shape::Point(..)) => Topology::Points,
@@ -143,7 +136,7 @@ fn punched(shapes: &[Shape], seed: u64, frame: &Frame) -> Arc<DrawShading> {
     };
     let one: [[f64; 4]; 4] = std::array::from_fn(|r| std::array::from_fn(|c| f64::from(u8::from(r == c))));
     let transform = ParameterTransform {
-        screen: Transform::new(&registers, Effects::empty(), frame.grid.size, frame.depth_format, 8),
+        screen: Transform::new(&GeometryRegisters::IDENTITY, Effects::empty(), frame.grid.size, frame.depth_format, 8),
         eye: one,
         normal: std::array::from_fn(|r| std::array::from_fn(|c| one[r][c])),
         perspective: false,
